@@ -184,6 +184,7 @@ mod tests {
     use std::f64::consts::PI;
     use tracelight_aim::{CameraPose, HeadPose, Lens};
     use tracelight_rig::{Command, Rig, Telemetry};
+    use tracelight_session::Session;
     use tracelight_sim::{RigConfig, Room, Simulated, Tick};
     use tracelight_stroke::{Element, Path, Piece, Stroke};
     use tracelight_task::{NoProgress, Status, Stop};
@@ -271,7 +272,7 @@ mod tests {
         }
     }
 
-    fn covered(images: u32) -> Covered {
+    fn covered(images: u32) -> Session<Covered> {
         let (rig, pose) = (RigConfig::report(), HeadPose::square_on(0.9144));
         let placing = Placing::default();
         let bytes = include_bytes!("../../../examples/house.png");
@@ -283,7 +284,8 @@ mod tests {
             pages: true,
             seed: 2,
         };
-        Covered { room: Furnished::new(&request, &rig, pose).unwrap().watched(&rig, pose), images }
+        let room = Furnished::new(&request, &rig, pose).unwrap().watched(&rig, pose);
+        Session::new(Covered { room, images })
     }
 
     #[test]

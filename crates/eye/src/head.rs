@@ -3,15 +3,14 @@
 //! A dot is a circle of a few millimetres, drawn slowly: at rest an encoder says no more than between which two of its edges a joint is.
 
 use std::f64::consts::PI;
-use std::ops::ControlFlow;
 
 use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, SeenSpot, align};
 use tracelight_maths::{atan2, planar};
 use tracelight_pipeline::{Driving, refused};
-use tracelight_rig::Command;
 use tracelight_rigfile::Timing;
 use tracelight_rigfile::head::KnownHead;
-use tracelight_sim::{DriveKind, RigConfig, Simulated, Tick, run_segments};
+use tracelight_session::{Request, State};
+use tracelight_sim::{DriveKind, RigConfig, Simulated as _, job_of};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
@@ -19,7 +18,7 @@ use tracelight_trajectory::{Plan, PlanRequest, plan};
 use crate::power::check_homed;
 use crate::spots::{History, Sight, Sighting, SpotWatch};
 use crate::wall::SeenWall;
-use crate::{Eye, Looks};
+use crate::{Driven, Eye, Looks};
 
 /// Radius of a dot, m: three and a half counts of the report's encoders at 3 ft.
 const DOT_M: f64 = 0.005;
@@ -34,7 +33,7 @@ const IN_VAIN: usize = 6;
 const BORDER: f64 = 0.08;
 /// A first guess of an exposure in which the spot is not full, s.
 pub const SPOT_EXPOSURE_S: f64 = 2e-3;
-/// Ticks after a job in which its last images arrive.
+/// Ticks after a job, or a fault, in which its last images arrive.
 const AFTERMATH_TICKS: u32 = 300;
 /// How often lateness is estimated anew: each time what is left is a tenth or less.
 const ROUNDS: usize = 4;
@@ -150,22 +149,20 @@ impl SeenDots {
     }
 }
 
-/// Has the head draw dots, watches them, and finds the head; whoever keeps its ticks is given each of them. The rig rests at zero in the dark; afterwards it rests
-/// in the dark at the last dot.
+/// Has the head draw dots, watches them, and finds the head. The rig rests at zero in the dark; afterwards it rests in the dark at the last dot.
 ///
 /// # Errors
 /// The head does not draw, its spot is not seen, or what is seen fits no head; or [`Failure::interrupted`].
-pub fn find_head<R: Simulated + Eye>(
-    rig: &mut R,
+pub fn find_head<D: Driven>(
+    rig: &mut D,
     camera: &Camera,
     driving: &Driving,
     request: &DotsRequest,
     task: Task<'_>,
-    keep: &mut dyn FnMut(&Tick),
 ) -> Result<FoundHead, Failure> {
     placed_finely(&driving.rig)?;
     let _kept = task.stop.keep();
-    let mut seen = see_dots(rig, camera, driving, request, task, keep)?;
+    let mut seen = see_dots(rig, camera, driving, request, task)?;
     let aligned = aligned(&request.belief, &mut seen.watch.timing, &seen.sightings, &seen.history)
         .map_err(|e| not_found(&e, &seen.watch, seen.dots))?;
     Ok(FoundHead {
@@ -195,13 +192,12 @@ fn placed_finely(rig: &RigConfig) -> Result<(), Failure> {
 ///
 /// # Errors
 /// The head does not draw, or its spot is not seen often enough; or [`Failure::interrupted`].
-pub fn see_dots<R: Simulated + Eye>(
-    rig: &mut R,
+pub fn see_dots<D: Driven>(
+    rig: &mut D,
     camera: &Camera,
     driving: &Driving,
     request: &DotsRequest,
     task: Task<'_>,
-    keep: &mut dyn FnMut(&Tick),
 ) -> Result<SeenDots, Failure> {
     let belief = &request.belief;
     let places = dots(camera, driving, request.across);
@@ -212,26 +208,29 @@ pub fn see_dots<R: Simulated + Eye>(
     watch.begin(rig.take(watch.exposure_s)?);
     let mut history = History::new(&driving.rig.model.relay);
     let mut sightings = Vec::new();
-    let (mut in_vain, mut homed) = (false, Ok(()));
-    let run = run_segments(rig, &plan.segments, false, |rig, now| {
-        keep(now);
+    check_homed(rig.session().told())?;
+    rig.ask(Request::Arm)?;
+    rig.ask(Request::Trace(job_of(&plan, false)))?;
+    let most = plan.points.len() + rig.session().rig().patience_ticks();
+    let (mut in_vain, mut homed, mut aftermath) = (false, Ok(()), AFTERMATH_TICKS);
+    for _ in 0..most {
+        let now = rig.step()?;
         history.push(&now.telemetry);
         look(rig, &mut watch, &history, &belief.alignment, &mut sightings);
         task.at(u64::from(now.telemetry.plan_tick));
         in_vain = sightings.is_empty() && watch.lost > request.most_in_vain;
         homed = check_homed(&now.telemetry);
-        if in_vain || homed.is_err() || task.stop.is_wanted() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+        let state = rig.session().state();
+        aftermath -= u32::from(!state.is_on());
+        if in_vain || homed.is_err() || task.stop.is_wanted() || state == State::Done || aftermath == 0 {
+            break;
         }
-    });
+    }
+    let (is_done, fault) = (rig.session().state() == State::Done, rig.session().told().fault);
     // dark, whether it came to its end or not
-    let _ = rig.send(Command::Disarm);
+    rig.ask(Request::Stop)?;
     for _ in 0..AFTERMATH_TICKS {
-        let _ = rig.send(Command::KeepAlive);
-        let tick = rig.step();
-        keep(&tick);
+        let tick = rig.step()?;
         homed = homed.and_then(|()| check_homed(&tick.telemetry));
         if homed.is_err() {
             break;
@@ -240,7 +239,7 @@ pub fn see_dots<R: Simulated + Eye>(
         look(rig, &mut watch, &history, &belief.alignment, &mut sightings);
     }
     task.check()?;
-    if let Some(fault) = run.fault() {
+    if let Some(fault) = fault {
         return Err(Failure::fault(fault));
     }
     homed?;
@@ -249,7 +248,7 @@ pub fn see_dots<R: Simulated + Eye>(
             format!("in {} images of its dots no spot is to be seen: it points elsewhere", watch.lost);
         return Err(Failure::failed("head-not-found", message));
     }
-    if !run.is_done() {
+    if !is_done {
         let message =
             "the head left its dots again and again, and the run was given up; step nearer (--distance)";
         return Err(Failure::failed("unfinished", message));

@@ -6,7 +6,7 @@
 //! | [`Shot`] | an image, and when it was taken; [`coding`] how its bytes mean pixels |
 //! | [`about`] | what a camera says of itself |
 //! | [`Looks`] | what takes a shot when told |
-//! | [`Eye`] | what sends shots by itself while a rig runs |
+//! | [`Eye`] | what sends shots by itself while a rig runs; [`Driven`], with a session that drives the rig |
 //! | [`board`] | pages of markers |
 //! | [`room`] | a simulated head and camera in front of a simulated wall |
 //! | [`wall`] | the camera found from markers in sight |
@@ -18,7 +18,7 @@
 //! | [`homing`] | a head that was just powered up finds where it points |
 //! | [`follow`] | the spot followed while a rig draws: what is off slowly, and suddenly |
 //! | [`painted`] | what was seen of it, as a picture |
-//! | [`feed`] | segments sent with what is slowly off taken off them |
+//! | [`trim`] | what is slowly off, taken off a plan's segments on their way |
 //! | [`trouble`] | what goes wrong in a simulated room |
 //! | [`figures`], [`seen`] | what was seen, as figures and as marks |
 
@@ -31,7 +31,7 @@ pub mod about;
 pub mod board;
 pub mod coding;
 pub mod corners;
-pub mod feed;
+mod driven;
 pub mod figure;
 pub mod figures;
 pub mod follow;
@@ -47,8 +47,10 @@ pub mod seen;
 mod shot;
 pub mod spots;
 pub mod told;
+pub mod trim;
 pub mod trouble;
 pub mod wall;
 
-pub use looks::{Eye, Looks, MOST_IMAGE_BYTES, PATIENCE_TICKS};
+pub use driven::{Driven, Eye};
+pub use looks::{Looks, MOST_IMAGE_BYTES, PATIENCE_TICKS};
 pub use shot::{Shot, grey};

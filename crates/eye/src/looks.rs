@@ -1,10 +1,9 @@
 //! What takes images: when told, or by itself while a rig runs.
 
-use tracelight_rig::Command;
-use tracelight_sim::Simulated;
 use tracelight_task::Failure;
 
 use crate::about::About;
+use crate::driven::Driven;
 use crate::shot::Shot;
 
 /// Something that takes an image when told.
@@ -29,18 +28,6 @@ pub trait Looks {
     }
 }
 
-/// Something that takes images of the wall, by the clock of the rig's ticks.
-pub trait Eye {
-    /// How long each row is to be exposed from the next image on, s.
-    fn expose(&mut self, exposure_s: f64);
-
-    /// Longest that a row can be exposed, s.
-    fn longest_s(&self) -> f64;
-
-    /// The oldest image that is there and was not asked for yet.
-    fn shot(&mut self) -> Option<Shot>;
-}
-
 /// Largest image that is taken, bytes: a hundred megapixels as JPEG.
 pub const MOST_IMAGE_BYTES: usize = 64_000_000;
 
@@ -48,13 +35,11 @@ pub const MOST_IMAGE_BYTES: usize = 64_000_000;
 pub const PATIENCE_TICKS: u32 = 3000;
 
 /// A rig that rests in the dark meanwhile.
-impl<R: Simulated + Eye> Looks for R {
+impl<R: Driven> Looks for R {
     fn take(&mut self, exposure_s: f64) -> Result<Shot, Failure> {
         self.expose(exposure_s);
         for _ in 0..PATIENCE_TICKS {
-            // a host that was heard once must go on
-            let _ = self.send(Command::KeepAlive);
-            self.step();
+            self.step()?;
             while let Some(shot) = self.shot() {
                 // those taken before it was told are exposed otherwise
                 if shot.is_exposed(exposure_s) {

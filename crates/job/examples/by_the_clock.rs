@@ -13,7 +13,7 @@ use tracelight_picture::decode;
 use tracelight_pipeline::{Asked, Driving, Placing, Tracing, request_of};
 use tracelight_rig::TICK_F64_S;
 use tracelight_session::{Job, Request, Session, State};
-use tracelight_sim::{RigConfig, Simulated, SimulatedRig, job_of};
+use tracelight_sim::{RigConfig, SimulatedRig, job_of, tick};
 use tracelight_task::{Failure, NoProgress, Pace, Stop, Task};
 
 const STAR: &[u8] = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/star.png"));
@@ -57,9 +57,9 @@ fn main() -> Result<(), Failure> {
     let mut pace = Pace::new(TICK_F64_S);
     let began = Instant::now();
     let (mut late_ms, mut dark_ms, mut asking) = (Vec::new(), Vec::new(), None);
-    for tick in 1..=ticks {
+    for number in 1..=ticks {
         pace.wait();
-        late_ms.push(1e3 * (began.elapsed().as_secs_f64() - tick as f64 * TICK_F64_S));
+        late_ms.push(1e3 * (began.elapsed().as_secs_f64() - number as f64 * TICK_F64_S));
         let was_lit = wall.told().actuation.lights();
         if let Ok(at) = asked.try_recv()
             && wall.request(Request::Stop).is_ok()
@@ -67,8 +67,8 @@ fn main() -> Result<(), Failure> {
         {
             asking = Some(at);
         }
-        let told = wall.tick_by(|rig| Some(rig.step()), |tick| &tick.telemetry);
-        let is_dark = told.is_some_and(|tick| !tick.telemetry.actuation.lights());
+        let told = tick(&mut wall);
+        let is_dark = !told.telemetry.actuation.lights();
         if let Some(at) = asking.take_if(|_| is_dark) {
             dark_ms.push(1e3 * at.elapsed().as_secs_f64());
         }

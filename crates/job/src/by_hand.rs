@@ -1,18 +1,16 @@
 //! A lap with somebody at the wall, who may pause, stop, hurry or slow it, and let it go on.
 
-use tracelight_session::{Event, Refused, Session, Snapshot, State, seconds};
+use tracelight_session::{Event, Refused, Session, Snapshot, State};
 use tracelight_sim::{Run, SimulatedRig, Tick, job_of};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
 
 use crate::course::Course;
+use crate::diary::Diary;
 use crate::frame::drive_framed;
 use crate::hands::{Ask, Hands};
-use crate::keep::Keep;
+use crate::keep::{Keep, REST_TICKS};
 use crate::looped::Looped;
-
-/// Ticks at rest that are kept in memory; the log has all.
-pub(crate) const REST_TICKS: u32 = 500;
 
 /// A lap, and what became of it.
 pub(crate) struct LapByHand {
@@ -81,46 +79,6 @@ impl Course for Lap<'_> {
             Ask::Request(request) => wall.request(request),
             // strokes come one after the other by themselves
             Ask::Step(_) => Ok(()),
-        }
-    }
-}
-
-/// What somebody at the wall did, as sentences for the report.
-#[derive(Default)]
-struct Diary {
-    notes: Vec<String>,
-    /// When the job came to rest, s, and how.
-    rests: Option<(f64, String)>,
-    speed: Option<f32>,
-}
-
-impl Diary {
-    /// Writes down another speed than the last one.
-    fn watch(&mut self, now: &Snapshot) {
-        let before = self.speed.replace(now.speed).unwrap_or(1.0);
-        if before != now.speed {
-            let percent = 100.0 * now.speed;
-            self.notes
-                .push(format!("from {:.1} s on at {percent:.0} % of the planned speed", seconds(now.tick)));
-        }
-    }
-
-    fn write(&mut self, event: &Event, now: &Snapshot) {
-        let &Event::State { tick, to, .. } = event else { return };
-        let how = match to {
-            State::Paused => "paused",
-            State::Stopped => "stopped",
-            _ => "",
-        };
-        let at_s = seconds(tick);
-        if !how.is_empty() && self.rests.is_none() {
-            let stroke = now.stroke.map_or(now.strokes, |stroke| stroke + 1);
-            self.rests =
-                Some((at_s, format!("{how} after {at_s:.1} s at stroke {stroke} of {}", now.strokes)));
-        } else if to == State::Tracing
-            && let Some((since_s, how)) = self.rests.take()
-        {
-            self.notes.push(format!("{how}, for {:.1} s", at_s - since_s));
         }
     }
 }

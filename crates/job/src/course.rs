@@ -3,7 +3,7 @@
 use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
 use tracelight_rig::Fault;
 use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
-use tracelight_sim::{AFTERMATH_TICKS, Simulated, SimulatedRig, Tick};
+use tracelight_sim::{AFTERMATH_TICKS, SimulatedRig, Tick, tick};
 use tracelight_task::{Failure, Task};
 
 use crate::hands::{Ask, Hands};
@@ -55,7 +55,7 @@ pub(crate) fn drive(
     task: Task<'_>,
 ) -> Result<Ended, Failure> {
     let wall = &mut Session::new(rig);
-    let first = step(wall)?;
+    let first = tick(wall);
     check_homed(&first.telemetry)?;
     course.keep(keep, first, &wall.snapshot(), 0)?;
     begin(wall, job).map_err(|why| Failure::failed("session", why.to_string()))?;
@@ -64,13 +64,13 @@ pub(crate) fn drive(
     while !course.is_over() && wall.state() != State::Done && goodbye > 0 && aftermath > 0 {
         // the tick in which a lap ends belongs to that one
         let laps = wall.snapshot().laps;
-        let tick = step(wall)?;
-        if power.is_lost(&tick.telemetry) {
+        let last = tick(wall);
+        if power.is_lost(&last.telemetry) {
             return Ok(Ended { failure: Some(lost_power()), fault: None, state: wall.state() });
         }
         let now = wall.snapshot();
-        if let Err(why) = course.keep(keep, tick, &now, laps) {
-            darken(wall)?;
+        if let Err(why) = course.keep(keep, last, &now, laps) {
+            darken(wall);
             return Err(why);
         }
         while let Some(event) = wall.event() {
@@ -91,19 +91,15 @@ pub(crate) fn drive(
     }
     if wall.told().actuation.lights() {
         let laps = wall.snapshot().laps;
-        let tick = darken(wall)?;
-        course.keep(keep, tick, &wall.snapshot(), laps)?;
+        let last = darken(wall);
+        course.keep(keep, last, &wall.snapshot(), laps)?;
     }
     Ok(Ended { failure: None, fault: wall.told().fault, state: wall.state() })
 }
 
-fn step(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
-    wall.tick_by(|rig| Some(rig.step()), |tick| &tick.telemetry).ok_or_else(lost_power)
-}
-
-fn darken(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
+fn darken(wall: &mut Session<&mut SimulatedRig>) -> Tick {
     let _ = wall.request(Request::Stop);
-    step(wall)
+    tick(wall)
 }
 
 fn begin(wall: &mut Session<&mut SimulatedRig>, job: Job) -> Result<(), Refused> {

@@ -45,6 +45,9 @@ pub trait Hands {
     /// Told that the frame of the drawing is drawn again and again from now on, until [`Step::Next`] is asked for, or that it is over.
     fn frames(&mut self, _on: bool) {}
 
+    /// Told that a camera looks into what is suddenly off, in the dark or by dots, or that it is done: meanwhile nothing but to stop can be asked.
+    fn looks(&mut self, _on: bool) {}
+
     /// Whether anything may still be asked; otherwise a lap that is stopped, or that a fault ended, is over.
     fn is_there(&self) -> bool;
 }

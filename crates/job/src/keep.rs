@@ -6,6 +6,9 @@ use tracelight_trajectory::Plan;
 
 use crate::points::PointDone;
 
+/// Ticks at rest that are kept in memory; the log has all.
+pub(crate) const REST_TICKS: u32 = 500;
+
 /// Told of every tick of a run as it happens: a log, a page, an array.
 pub trait Keep {
     /// One more tick, and the plan that it follows.

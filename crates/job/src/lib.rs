@@ -13,12 +13,14 @@
 #![doc = include_str!("../examples/picture_to_figures.rs")]
 //! ```
 
+mod aside;
+mod attended;
 mod by_hand;
 mod course;
+mod diary;
 mod frame;
 mod hands;
 mod keep;
-mod kept;
 mod lap;
 mod looped;
 mod points;

@@ -206,7 +206,7 @@ impl Prepared {
         self.run_with(keep, None, task)
     }
 
-    /// Runs the laps with somebody at the wall, who may pause and stop each of them, and let it go on. A job that a camera follows has no use for `hands`.
+    /// Runs the laps with somebody at the wall, who may pause and stop each of them, and let it go on.
     ///
     /// # Errors
     /// As of [`run`](Self::run).
@@ -365,7 +365,9 @@ impl Prepared {
                 failure = why;
                 continue;
             };
-            let mut done = self.watched_lap(looks, &learned.rig, keep, task)?;
+            let hands = lent(&mut hands);
+            let mut done = self.watched_lap(looks, &learned.rig, (keep, hands), task)?;
+            learned.notes.append(&mut done.notes);
             laps.push(std::mem::take(&mut done.run));
             failure = done.failure.take();
             watched = Some(done);
@@ -380,7 +382,7 @@ impl Prepared {
         &self,
         (seen, room): (&Seen, &Furnished),
         believed: &RigConfig,
-        keep: &mut dyn Keep,
+        (keep, mut hands): (&mut dyn Keep, Option<&mut dyn Hands>),
         task: Task<'_>,
     ) -> Result<WatchedRun, Failure> {
         let mut driving = self.driving.clone();
@@ -392,7 +394,15 @@ impl Prepared {
             seen,
             dry: self.how.dry,
         };
-        run_watched(&job, room.watched(believed, driving.pose), keep, task)
+        run_watched(&job, room.watched(believed, driving.pose), (keep, lent(&mut hands)), task)
+    }
+}
+
+/// Whoever stands at the wall, for a lap.
+fn lent<'a>(hands: &'a mut Option<&mut dyn Hands>) -> Option<&'a mut dyn Hands> {
+    match hands {
+        Some(hands) => Some(&mut **hands),
+        None => None,
     }
 }
 

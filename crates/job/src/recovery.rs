@@ -9,19 +9,17 @@ use tracelight_eye::power::lost_power;
 use tracelight_eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
 use tracelight_eye::{Eye, Looks, PATIENCE_TICKS, Shot};
 use tracelight_pipeline::refused;
-use tracelight_rig::{Command, PanTilt, Rig, TICK_F64_S, Telemetry};
-use tracelight_sim::{Simulated, Tick, arm};
+use tracelight_rig::{PanTilt, TICK_F64_S};
+use tracelight_session::{Refused, Request, State, When};
 use tracelight_stroke::{Drawing, Stroke};
-use tracelight_task::Failure;
+use tracelight_task::{Failure, Task};
 use tracelight_trajectory::{Plan, plan};
 
-use crate::kept::Kept;
+use crate::aside::Aside;
 use crate::watched::{MOST_RECOVERIES, REST_TICKS, Watched, Why};
 
-/// Most ticks that a head needs to go back to zero, and what counts as there.
+/// Most ticks that a head needs to go back to zero.
 const HOME_TICKS: u32 = 8000;
-const HOME_RAD: f64 = 2e-3;
-const HOME_RAD_S: f64 = 5e-3;
 /// A head that seems to have moved by less, mm, stands where it stood.
 const STOOD_MM: f64 = 0.7;
 /// Most dots by which jolts are looked after.
@@ -32,8 +30,23 @@ const DOT_TICKS: u16 = 60;
 const DOT_SHARE: f64 = 0.8;
 
 impl Watched<'_> {
+    /// Looks into what is off. Why the head must be found again; nothing if the job goes on.
+    pub(crate) fn look_after(&mut self, suspicion: Suspicion) -> Result<Option<Why>, Failure> {
+        let Some(suspicion) = self.dotted(suspicion) else { return Ok(None) };
+        let words = self.look_into(suspicion)?;
+        Ok(words.map(|words| Why { words, seen_off: matches!(suspicion, Suspicion::Off(_)) }))
+    }
+
+    /// Pauses what is drawn, dark at once, and lets the head come to rest.
+    fn pause(&mut self) {
+        if self.session.state().is_on() {
+            let _ = self.session.request(Request::Pause(When::AtOnce));
+        }
+        self.rest(REST_TICKS);
+    }
+
     /// What a jolt came to: the head is darkened, and one dot tells where it points. Nothing if that is where it should be, or nobody sees.
-    pub(crate) fn dotted(&mut self, suspicion: Suspicion) -> Option<Suspicion> {
+    fn dotted(&mut self, suspicion: Suspicion) -> Option<Suspicion> {
         let Suspicion::Jolt(_) = suspicion else { return Some(suspicion) };
         let is_lit = self.joined.points.get(self.plan_tick as usize).is_some_and(|point| point.lit);
         let is_blind = self.follower.blind().is_some();
@@ -41,22 +54,20 @@ impl Watched<'_> {
         if is_blind || !is_lit || self.job.dry || self.figures.checks >= MOST_CHECKS {
             return None;
         }
-        let _ = self.room.send(Command::Disarm);
-        self.rest(REST_TICKS);
+        self.pause();
         let before = self.follower.marks.len();
         let images_s = 2.0 * self.follower.period_s() + f64::from(DOT_TICKS) * TICK_F64_S;
         let most_s = DOT_SHARE * self.driving.rig.light.standing_s;
         let dot_ticks = (images_s.min(most_s) / TICK_F64_S).round() as u16;
-        if self.is_over() {
+        if self.is_over() || self.session.request(Request::Mark(dot_ticks)).is_err() {
             return None;
         }
-        let _ = self.room.send(Command::Point(dot_ticks));
         let mut off = None;
         self.dots = true;
         for _ in 0..u32::from(dot_ticks) + REST_TICKS {
-            off = off.or(self.step(None).1);
+            off = off.or(self.step().1);
             if self.is_over() {
-                let _ = self.room.send(Command::Disarm);
+                let _ = self.session.request(Request::Stop);
                 break;
             }
         }
@@ -68,7 +79,7 @@ impl Watched<'_> {
     }
 
     /// Darkens, and looks what became of the camera. Why the head must be found again, if the camera stands where it stood.
-    pub(crate) fn look_into(&mut self, suspicion: Suspicion) -> Result<Option<String>, Failure> {
+    fn look_into(&mut self, suspicion: Suspicion) -> Result<Option<String>, Failure> {
         let began_s = self.now_s();
         let Some(wall) = self.wall_now(suspicion)? else { return Ok(None) };
         if self.figures.recoveries.len() >= MOST_RECOVERIES {
@@ -96,10 +107,9 @@ impl Watched<'_> {
 
     /// The wall as the camera sees it now, in the dark; nothing if it is blind, and the job goes on without it.
     fn wall_now(&mut self, suspicion: Suspicion) -> Result<Option<SeenWall>, Failure> {
-        let _ = self.room.send(Command::Disarm);
-        self.rest(REST_TICKS);
-        let stop = self.task.stop;
-        let wall = well_exposed(self, stop).and_then(|pixels| see_wall(pixels, Some(&self.wall)));
+        self.pause();
+        let stop = self.looking.stop.clone();
+        let wall = well_exposed(self, &stop).and_then(|pixels| see_wall(pixels, Some(&self.wall)));
         stop.check()?;
         if self.is_over() || self.follower.blind() == Some(Blind::Stamps) {
             return Ok(None);
@@ -138,7 +148,7 @@ impl Watched<'_> {
 
     /// Time since power-up, s.
     pub(crate) fn now_s(&self) -> f64 {
-        self.run.ticks.last().map_or(0.0, |tick| f64::from(tick.telemetry.tick) * TICK_F64_S)
+        f64::from(self.session.told().tick) * TICK_F64_S
     }
 
     fn recovered(&mut self, t_s: f64, what: String, dots: usize) {
@@ -153,35 +163,24 @@ impl Watched<'_> {
         Why { words: why, seen_off }: &Why,
         left: &Drawing,
     ) -> Result<Plan, Failure> {
-        self.task.check()?;
+        self.looking.stop.check()?;
         let began_s = self.now_s();
         self.rest(REST_TICKS);
         self.home()?;
         let (timing, exposure_s) = (self.follower.watch.timing, self.follower.watch.exposure_s);
         let camera = self.wall.stood.as_ref().map_or(self.job.seen.followed.camera, |s| s.camera.camera);
         let request = DotsRequest::again(&self.driving, timing, exposure_s);
-        let Self { room, keep: kept, joined, failed, plan_tick, power, unpowered, .. } = self;
-        let mut keep = |tick: &Tick| {
-            let mut tick = *tick;
-            *unpowered |= power.is_lost(&tick.telemetry);
-            if *unpowered {
-                return;
-            }
-            tick.telemetry.plan_tick = *plan_tick;
-            if let Err(error) = kept.tick(joined, &tick) {
-                *failed = failed.take().or(Some(error));
-            }
-        };
+        let driving = self.driving.clone();
+        let stop = self.looking.stop.clone();
+        let task = Task { stop: &stop, ..self.task };
         let because = |e: Failure| Failure { message: format!("{why}; {}", e.message), ..e };
         let mut turned_rad = PanTilt::default();
-        if !room.told().homed {
-            let mut room = Kept { room, keep: &mut keep };
-            let homed = home_again(&mut room, &camera, &self.driving, (timing, exposure_s), self.task);
+        if !self.session.told().homed {
+            let homed = home_again(&mut Aside(self), &camera, &driving, (timing, exposure_s), task);
             let count_rad = self.driving.rig.model.encoder.count_rad();
             turned_rad = homed.map_err(because)?.counts.map(|count| f64::from(count) * count_rad);
         }
-        let found =
-            find_head(room, &camera, &self.driving, &request, self.task, &mut keep).map_err(because)?;
+        let found = find_head(&mut Aside(self), &camera, &driving, &request, task).map_err(because)?;
         let Alignment { geometry, pose, .. } = found.aligned.alignment;
         let moved = self.moved_mm(left, (&geometry, &pose), turned_rad);
         self.driving.believe(geometry, pose);
@@ -232,25 +231,28 @@ impl Watched<'_> {
 
     /// Forgets the job and goes back to zero in the dark.
     fn home(&mut self) -> Result<(), Failure> {
-        arm(&mut self.room);
-        let _ = self.room.send(Command::Abandon);
+        let refused = |why: Refused| Failure::failed("session", why.to_string());
+        if self.session.state() == State::Fault {
+            self.session.request(Request::Clear).map_err(refused)?;
+            self.step();
+        }
+        self.trimmer = None;
+        self.session.request(Request::Park).map_err(refused)?;
         for _ in 0..HOME_TICKS {
-            let (tick, _) = self.step(None);
+            let (tick, _) = self.step();
             if self.unpowered {
                 return Err(lost_power());
             }
-            let Telemetry { position_rad, velocity_rad_s, fault, .. } = tick.telemetry;
-            if let Some(fault) = fault {
+            if let Some(fault) = tick.telemetry.fault {
                 return Err(Failure::fault(fault));
             }
-            let near = |v: PanTilt<f32>, most: f64| f64::from(v.pan.abs().max(v.tilt.abs())) < most;
-            if near(position_rad, HOME_RAD) && near(velocity_rad_s, HOME_RAD_S) {
+            if self.session.state() != State::Parking {
                 return Ok(());
             }
-            self.task.check()?;
+            self.looking.stop.check()?;
         }
         let message = format!(
-            "the head did not come within {HOME_RAD} rad of zero in {:.0} s: is something in its way?",
+            "the head did not come to zero in {:.0} s: is something in its way?",
             f64::from(HOME_TICKS) * TICK_F64_S
         );
         Err(Failure::failed("unfinished", message))
@@ -259,24 +261,24 @@ impl Watched<'_> {
 
 impl Looks for Watched<'_> {
     fn take(&mut self, exposure_s: f64) -> Result<Shot, Failure> {
-        self.follower.want(exposure_s.min(self.room.longest_s()));
-        self.room.expose(exposure_s);
+        self.follower.want(exposure_s.min(self.session.longest_s()));
+        self.session.expose(exposure_s);
         for _ in 0..PATIENCE_TICKS {
-            self.step(None);
+            self.step();
             if self.unpowered {
                 return Err(lost_power());
             }
             if let Some(shot) = self.follower.taken() {
                 return Ok(shot);
             }
-            self.task.check()?;
+            self.looking.stop.check()?;
         }
         self.follower.want_no_more();
         Err(Failure::failed("no-image", "the camera sends no image any more: is it still plugged in?"))
     }
 
     fn longest(&self) -> Option<f64> {
-        Some(self.room.longest_s())
+        Some(self.session.longest_s())
     }
 }
 

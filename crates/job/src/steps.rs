@@ -8,11 +8,10 @@ use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Task, counted};
 use tracelight_trajectory::Plan;
 
-use crate::by_hand::REST_TICKS;
 use crate::course::Course;
 use crate::frame::drive_framed;
 use crate::hands::{Ask, Hands, Step};
-use crate::keep::Keep;
+use crate::keep::{Keep, REST_TICKS};
 use crate::looped::{Item, Looped};
 use crate::points::PointDone;
 use crate::remainder::join;

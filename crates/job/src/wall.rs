@@ -1,7 +1,6 @@
 //! What a camera adds to a job: the figure is traced where it is seen, and the head is found from dots before it draws.
 
 use tracelight_aim::{Alignment, Camera, TrimBelief};
-use tracelight_eye::Looks;
 use tracelight_eye::figure::{FigureRequest, SeenFigure, metres_per_pixel, see_figure};
 use tracelight_eye::figures::{EyeFigures, HeadFigures, HomedFigures};
 use tracelight_eye::follow::Followed;
@@ -9,12 +8,14 @@ use tracelight_eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, s
 use tracelight_eye::homing::home_head;
 use tracelight_eye::power::check_homed;
 use tracelight_eye::room::{Furnished, RoomRequest};
+use tracelight_eye::{Driven as _, Looks};
 use tracelight_picture::{Pixels, Source};
 use tracelight_pipeline::{DistanceFrom, Driving, sketch};
 use tracelight_rig::PanTilt;
 use tracelight_rigfile::Timing;
 use tracelight_rigfile::head::KnownHead;
-use tracelight_sim::{Room, Simulated};
+use tracelight_session::Session;
+use tracelight_sim::Room;
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Task};
 
@@ -103,7 +104,7 @@ enum Stage<'a> {
 
 /// A simulated rig in its room.
 struct Staged<'a> {
-    rig: Room,
+    rig: Session<Room>,
     room: Furnished,
     hung: Option<Hung<'a>>,
 }
@@ -122,7 +123,7 @@ impl<'a> Stage<'a> {
             RoomRequest { picture: hung, placing: &request.placing, eye, pages, seed: request.run.seed };
         let room = Furnished::new(&asked, &driving.rig, driving.pose)?;
         let put_up = if request.run.powered_up { Furnished::powered_up } else { Furnished::watched };
-        let rig = put_up(&room, &driving.rig, driving.pose);
+        let rig = Session::new(put_up(&room, &driving.rig, driving.pose));
         Ok(Self::Room(Box::new(Staged { rig, room, hung: picture })))
     }
 
@@ -177,7 +178,7 @@ impl HeadSeen {
 /// The head of a simulated room: homed if that is asked for, and found from dots unless it was before; from then on it is believed.
 fn head_of(
     home: bool,
-    (rig, room): (&mut Room, &mut Furnished),
+    (rig, room): (&mut Session<Room>, &mut Furnished),
     camera: &Camera,
     driving: &mut Driving,
     known: Option<KnownHead>,
@@ -186,13 +187,13 @@ fn head_of(
     let believed = HeadSeen::believed(known.as_ref(), camera);
     let homed = if home {
         let homed = home_head(rig, camera, driving, known.as_ref().and_then(KnownHead::images), task)?;
-        room.homed(rig, &homed);
+        room.homed(rig.rig_mut(), &homed);
         Some(homed.figures())
     } else {
         None
     };
     if known.is_some() {
-        check_homed(&rig.step().telemetry)?;
+        check_homed(&rig.step()?.telemetry)?;
         return Ok(HeadSeen { homed, ..believed });
     }
     let (found, figures) = found_head(rig, room, camera, driving, task)?;
@@ -207,13 +208,13 @@ fn head_of(
 
 /// The head found from dots; from then on it is believed.
 fn found_head(
-    rig: &mut Room,
+    rig: &mut Session<Room>,
     room: &Furnished,
     camera: &Camera,
     driving: &mut Driving,
     task: Task<'_>,
 ) -> Result<(FoundHead, HeadFigures), Failure> {
-    let found = find_head(rig, camera, driving, &DotsRequest::first(driving), task, &mut |_| {})?;
+    let found = find_head(rig, camera, driving, &DotsRequest::first(driving), task)?;
     let Alignment { geometry, pose, .. } = found.aligned.alignment;
     driving.believe(geometry, pose);
     let truth = room.true_error_m(&geometry, &pose);

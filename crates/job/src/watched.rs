@@ -2,22 +2,25 @@
 //! on from where the light was last seen to be right.
 
 use tracelight_aim::Correction;
-use tracelight_eye::feed::TrimmedFeeder;
 use tracelight_eye::figures::{FollowFigures, SeenOff, TrimFigures};
 use tracelight_eye::follow::{Blind, Follower, Suspicion, strayed_rad};
 use tracelight_eye::painted::Painted;
 use tracelight_eye::power::{PowerWatch, lost_power};
 use tracelight_eye::seen::{SeenLight, SeenMark};
+use tracelight_eye::trim::Trimmer;
 use tracelight_eye::trouble::TroubleAt;
 use tracelight_pipeline::Driving;
-use tracelight_rig::{Command, Darkness, Fault, PanTilt, Phase, Rig, TICK_F64_S, Telemetry};
+use tracelight_rig::{Darkness, Fault, PanTilt, Phase, TICK_F64_S, Telemetry};
 use tracelight_rigfile::camera::KnownCamera;
-use tracelight_sim::{AFTERMATH_TICKS, Room, Run, Simulated, Tick, arm};
+use tracelight_session::{Job, Request, Session, State};
+use tracelight_sim::{AFTERMATH_TICKS, Room, Run, Simulated as _, Tick, job_of, tick, tick_trimmed};
 use tracelight_stroke::Drawing;
-use tracelight_task::{Failure, Task};
+use tracelight_task::{Failure, Stop, Task};
 use tracelight_trajectory::Plan;
 
-use crate::keep::Keep;
+use crate::diary::Diary;
+use crate::hands::Hands;
+use crate::keep::{Keep, REST_TICKS as KEPT_TICKS};
 use crate::remainder::{join, left};
 use crate::seen::Seen;
 
@@ -39,6 +42,8 @@ pub(crate) struct WatchedRun {
     pub(crate) plan: Plan,
     pub(crate) figures: FollowFigures,
     pub(crate) seen: SeenLight,
+    /// Pauses and other speeds.
+    pub(crate) notes: Vec<String>,
     /// Why it ended before its time, if neither the rig nor the user ended it.
     pub(crate) failure: Option<Failure>,
 }
@@ -60,6 +65,17 @@ enum Ended {
     GivenUp,
 }
 
+/// A camera that looks into what is off, while somebody may be at the wall.
+#[derive(Default)]
+pub(crate) struct Looking {
+    /// It does.
+    pub(crate) on: bool,
+    /// Set once that is to end: whoever stands there stopped it, or the whole job is over.
+    pub(crate) stop: Stop,
+    /// Whoever stopped it has armed since, and wants it to go on.
+    pub(crate) goes_on: bool,
+}
+
 /// Why a head must be found again.
 pub(crate) struct Why {
     pub(crate) words: String,
@@ -70,7 +86,19 @@ pub(crate) struct Why {
 /// A run under way.
 pub(crate) struct Watched<'a> {
     pub(crate) job: &'a WatchedJob<'a>,
-    pub(crate) room: Room,
+    pub(crate) session: Session<Room>,
+    /// Trims the plan that is followed; `None` while there is none.
+    pub(crate) trimmer: Option<Trimmer>,
+    /// Number of the first stroke of that plan.
+    first: u32,
+    /// Who stands at the wall.
+    pub(crate) hands: Option<&'a mut dyn Hands>,
+    pub(crate) diary: Diary,
+    pub(crate) looking: Looking,
+    /// Somebody has paused or stopped it, and has not let it go on.
+    held: bool,
+    /// Ticks since it rests.
+    rests: u32,
     pub(crate) follower: Follower,
     pub(crate) driving: Driving,
     pub(crate) wall: KnownCamera,
@@ -94,16 +122,23 @@ pub(crate) struct Watched<'a> {
 }
 
 /// Runs a plan, watched.
-pub(crate) fn run_watched(
-    job: &WatchedJob<'_>,
+pub(crate) fn run_watched<'a>(
+    job: &'a WatchedJob<'a>,
     room: Room,
-    keep: &mut dyn Keep,
-    task: Task<'_>,
+    (keep, hands): (&'a mut dyn Keep, Option<&'a mut dyn Hands>),
+    task: Task<'a>,
 ) -> Result<WatchedRun, Failure> {
     let painted = Painted::new(&job.seen.image, job.seen.followed.camera);
     let mut watched = Watched {
         job,
-        room,
+        session: Session::new(room),
+        trimmer: None,
+        first: 0,
+        hands,
+        diary: Diary::default(),
+        looking: Looking::default(),
+        held: false,
+        rests: 0,
         follower: Follower::new(&job.seen.followed, Some(painted)),
         driving: job.driving.clone(),
         wall: job.seen.wall.clone(),
@@ -121,6 +156,7 @@ pub(crate) fn run_watched(
         unpowered: false,
         task,
     };
+    watched.step();
     if job.driving.rig.drive.kind.is_open_loop() {
         watched.await_darkness();
     }
@@ -130,21 +166,20 @@ pub(crate) fn run_watched(
     let failure = watched.power_lost().or(failure);
     watched.failed.take().map_or(Ok(()), Err)?;
     watched.tell();
-    let Watched { run, joined, figures, follower, .. } = watched;
+    let Watched { run, joined, figures, follower, diary, .. } = watched;
     let painting = follower.watch.painted.as_ref().and_then(Painted::picture);
     let seen = SeenLight { marks: follower.marks, painting };
-    Ok(WatchedRun { run, plan: joined, figures, seen, failure })
+    Ok(WatchedRun { run, plan: joined, figures, seen, notes: diary.notes, failure })
 }
 
 impl Watched<'_> {
     /// Runs a drawing, and what is left of it whenever something was suddenly off.
     fn all(&mut self, mut plan: Plan, mut drawing: Drawing) -> Result<(), Failure> {
-        let mut strokes = 0;
         loop {
             let Some((why, first, left)) = self.one(&plan, &drawing)? else { return Ok(()) };
-            let next = self.found_again(&why, &left)?;
-            strokes += first;
-            self.base = join(&mut self.joined, self.plan_tick, &next, strokes);
+            let next = self.looked(|watched| watched.found_again(&why, &left))?;
+            self.first += first;
+            self.base = join(&mut self.joined, self.plan_tick, &next, self.first);
             self.plan_tick = self.base;
             self.task.stage("run", self.joined.points.len() as u64);
             (plan, drawing) = (next, left);
@@ -153,25 +188,18 @@ impl Watched<'_> {
 
     /// Follows a plan to its end, or to where the head is to be found again: then why, and what is left with the number of its first stroke.
     fn one(&mut self, plan: &Plan, drawing: &Drawing) -> Result<Option<(Why, u32, Drawing)>, Failure> {
-        let mut feeder = TrimmedFeeder::new(&plan.segments, self.job.dry);
         loop {
-            let suspicion = match self.follow(&mut feeder, plan) {
-                Ended::Fault(fault) if may_be_found_again(fault) && self.can_recover() => {
+            let suspicion = match self.follow(plan)? {
+                Ended::Fault(fault) => {
                     let why = Why { words: format!("fault {}", fault.code()), seen_off: false };
                     return Ok(left(plan, drawing, self.rewound()).map(|(first, left)| (why, first, left)));
-                }
-                Ended::Fault(_) => {
-                    self.rest(AFTERMATH_TICKS);
-                    return Ok(None);
                 }
                 Ended::Done | Ended::Stopped | Ended::GivenUp => return Ok(None),
                 Ended::Suspect(suspicion) => suspicion,
             };
-            let Some(suspicion) = self.dotted(suspicion) else { continue };
-            let Some(words) = self.look_into(suspicion)? else { continue };
+            let Some(why) = self.looked(|watched| watched.look_after(suspicion))? else { continue };
             // what was all but finished is finished
             if let Some((first, left)) = left(plan, drawing, self.rewound()) {
-                let why = Why { words, seen_off: matches!(suspicion, Suspicion::Off(_)) };
                 return Ok(Some((why, first, left)));
             }
         }
@@ -185,8 +213,21 @@ impl Watched<'_> {
             if self.follower.watch.is_ready() || self.is_over() {
                 return;
             }
-            self.step(None);
+            self.step();
         }
+    }
+
+    /// Has the camera look into what is off, until it has, however often somebody stops that on its way and has it go on.
+    fn looked<T>(&mut self, mut look: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Failure> {
+        self.look(true);
+        let found = loop {
+            let found = look(self);
+            if !self.is_to_look_again() {
+                break found;
+            }
+        };
+        self.look(false);
+        found
     }
 
     fn can_recover(&self) -> bool {
@@ -209,6 +250,11 @@ impl Watched<'_> {
 
     /// Whether the user, a log that can not be written, or a rig without power ends the run.
     pub(crate) fn is_over(&self) -> bool {
+        self.is_ended() || self.looking.stop.is_wanted()
+    }
+
+    /// The same, but for what somebody at the wall may let go on.
+    pub(crate) fn is_ended(&self) -> bool {
         self.task.stop.is_wanted() || self.failed.is_some() || self.unpowered
     }
 
@@ -218,63 +264,93 @@ impl Watched<'_> {
         good.map_or(0, |tick| tick - self.base).min(self.plan_tick - self.base)
     }
 
-    /// Arms the rig and feeds it until something happens.
-    fn follow(&mut self, feeder: &mut TrimmedFeeder<'_>, plan: &Plan) -> Ended {
-        if let Some(fault) = self.run.ticks.last().and_then(|tick| tick.telemetry.fault) {
-            return Ended::Fault(fault);
-        }
-        if self.is_over() {
-            let _ = self.room.send(Command::Disarm);
-            return Ended::Stopped;
-        }
-        let most = plan.points.len() + self.room.patience_ticks();
-        arm(&mut self.room);
+    /// Begins a plan, or goes on with it, unless somebody holds it; who started the job has done both acts.
+    fn go(&mut self, plan: &Plan) -> Result<(), Failure> {
+        let dry = self.job.dry;
+        let arms = match self.session.state() {
+            State::Ready | State::Done | State::Stopped => !dry,
+            _ => false,
+        };
+        let request = match self.session.state() {
+            _ if self.held => return Ok(()),
+            State::Ready | State::Done => {
+                self.trimmer = Some(Trimmer::new());
+                let of = self.job.drawing.strokes.len() as u32;
+                Request::Trace(Job { first: self.first, of, ..job_of(plan, dry) })
+            }
+            State::Paused | State::Stopped => Request::Resume,
+            _ => return Ok(()),
+        };
+        let armed = if arms { self.session.request(Request::Arm) } else { Ok(()) };
+        armed
+            .and_then(|()| self.session.request(request))
+            .map_err(|why| Failure::failed("session", why.to_string()))
+    }
+
+    /// Follows a plan until something happens.
+    fn follow(&mut self, plan: &Plan) -> Result<Ended, Failure> {
+        self.go(plan)?;
+        let mut most = plan.points.len() + self.session.rig().patience_ticks();
+        let mut aftermath = AFTERMATH_TICKS;
         // what is armed anew on its way begins with a hold
         let mut was_held = true;
         let mut lit = false;
-        for _ in 0..most {
+        while most > 0 && aftermath > 0 {
             let wanted = if self.job.seen.open { Correction::default() } else { self.follower.correction() };
-            feeder.feed(&mut self.room, self.plan_tick - self.base, &wanted);
-            let (tick, suspicion) = self.step(Some(feeder));
+            self.trimmer.iter_mut().for_each(|trimmer| trimmer.wanted = wanted);
+            let (tick, suspicion) = self.step();
             if self.is_over() {
-                let _ = self.room.send(Command::Disarm);
+                let _ = self.session.request(Request::Stop);
                 self.rest(AFTERMATH_TICKS);
-                return Ended::Stopped;
+                return Ok(Ended::Stopped);
             }
-            if let Some(fault) = tick.telemetry.fault {
-                return Ended::Fault(fault);
+            let state = self.session.state();
+            self.held = !state.is_on();
+            match tick.telemetry.fault {
+                Some(fault) if may_be_found_again(fault) && self.can_recover() => {
+                    self.held = false;
+                    return Ok(Ended::Fault(fault));
+                }
+                None if state == State::Done => return Ok(Ended::Done),
+                _ => {}
             }
-            if tick.telemetry.phase == Phase::Done {
-                return Ended::Done;
+            if self.held {
+                was_held = true;
+                aftermath -= u32::from(!self.is_attended());
+            } else {
+                most -= 1;
             }
             lit |= tick.telemetry.actuation.lights();
-            let holds = matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
+            let holds = !self.held && matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
             // before the first light it may only wait until its encoders were seen to follow its motors
             let waits = !lit && tick.telemetry.darkness.contains(Darkness::Untested);
             // a gyroscope tells by itself whether the head stands where it stood
             let judged = tick.telemetry.darkness.contains(Darkness::Jolted);
             let held = (holds && !was_held && !waits && !judged)
                 .then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
-            was_held = holds;
-            if let Some(suspicion) = suspicion.or(held).filter(|_| !self.job.seen.open) {
-                return Ended::Suspect(suspicion);
+            was_held = holds || self.held;
+            let suspicion = suspicion.or(held).filter(|_| !self.job.seen.open && state != State::Fault);
+            if let Some(suspicion) = suspicion {
+                return Ok(Ended::Suspect(suspicion));
             }
         }
-        Ended::GivenUp
+        Ok(Ended::GivenUp)
     }
 
     /// One tick, watched and kept.
-    pub(crate) fn step(&mut self, feeder: Option<&TrimmedFeeder<'_>>) -> (Tick, Option<Suspicion>) {
-        let _ = self.room.send(Command::KeepAlive);
-        let mut tick = self.room.step();
+    pub(crate) fn step(&mut self) -> (Tick, Option<Suspicion>) {
+        let mut tick = match &mut self.trimmer {
+            Some(trimmer) => tick_trimmed(&mut self.session, trimmer),
+            None => tick(&mut self.session),
+        };
         // its ticks, counts and clock are others from then on
         self.unpowered |= self.power.is_lost(&tick.telemetry);
         if self.unpowered {
             return (tick, None);
         }
-        self.ask(&mut tick, feeder);
+        self.place(&mut tick);
         self.strike(&tick);
-        let suspicion = self.follower.tick(&mut self.room, &tick);
+        let suspicion = self.follower.tick(self.session.rig_mut(), &tick);
         self.tell_blindness();
         if let Err(error) = self.keep.tick(&self.joined, &tick) {
             self.failed = self.failed.take().or(Some(error));
@@ -284,9 +360,12 @@ impl Watched<'_> {
         }
         // a dot is not the drawing's
         let keeps = !self.dots || !tick.light;
-        if keeps {
+        let rests = !self.looking.on && !self.session.state().is_on() && !tick.light;
+        self.rests = if rests { self.rests.saturating_add(1) } else { 0 };
+        if keeps && self.rests <= KEPT_TICKS {
             self.run.ticks.push(tick);
         }
+        self.listen();
         (tick, suspicion)
     }
 
@@ -298,13 +377,13 @@ impl Watched<'_> {
         })
     }
 
-    /// Where the plan wanted the spot, before it was trimmed, and where in all that is planned its clock stands.
-    fn ask(&mut self, tick: &mut Tick, feeder: Option<&TrimmedFeeder<'_>>) {
+    /// Tells a tick where the plan wanted the spot, before it was trimmed, and where in all that is planned its clock stands.
+    fn place(&mut self, tick: &mut Tick) {
         let Telemetry { plan_tick, setpoint, .. } = &mut tick.telemetry;
-        let angle = match feeder {
-            Some(feeder) => {
+        let angle = match &self.trimmer {
+            Some(trimmer) => {
                 self.plan_tick = self.base + *plan_tick;
-                feeder.untrimmed(*plan_tick, setpoint)
+                trimmer.untrimmed(*plan_tick, setpoint)
             }
             None => self.follower.correction().apply(setpoint.map(|s| f64::from(s.position_rad))),
         };
@@ -316,8 +395,8 @@ impl Watched<'_> {
     fn strike(&mut self, tick: &Tick) {
         let now_s = f64::from(tick.telemetry.plan_tick) * TICK_F64_S;
         let left_s = self.joined.duration_s() - now_s;
-        let Self { troubles, room, .. } = self;
-        troubles.retain(|trouble| !trouble.strike(room, (now_s, left_s), tick.light));
+        let Self { troubles, session, .. } = self;
+        troubles.retain(|trouble| !trouble.strike(session.rig_mut(), (now_s, left_s), tick.light));
     }
 
     /// The figures of what was seen.
@@ -367,16 +446,16 @@ impl Watched<'_> {
 
     /// Nobody leaves a gate open.
     fn darken(&mut self) {
-        let _ = self.room.send(Command::Disarm);
-        if self.room.told().actuation.lights() {
-            self.step(None);
+        let _ = self.session.request(Request::Stop);
+        if self.session.told().actuation.lights() {
+            self.step();
         }
     }
 
     /// So many ticks in which nothing new is sent.
     pub(crate) fn rest(&mut self, ticks: u32) {
         for _ in 0..ticks {
-            self.step(None);
+            self.step();
         }
     }
 }

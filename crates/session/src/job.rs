@@ -1,4 +1,4 @@
-use tracelight_rig::{Command, Rig, Segment};
+use tracelight_rig::Segment;
 
 use crate::state::State;
 
@@ -80,34 +80,4 @@ pub(crate) fn ticks_of(segments: &[Segment]) -> u32 {
 pub(crate) fn stroke_at(strokes: &[StrokeTicks], plan_tick: u32) -> Option<u32> {
     let number = strokes.partition_point(|stroke| stroke.end <= plan_tick);
     (number < strokes.len()).then_some(number as u32)
-}
-
-/// Feeds a plan's segments to a rig as it takes them.
-#[derive(Clone, Debug)]
-pub struct Feeder<S> {
-    segments: S,
-    dark: bool,
-    next: usize,
-    finished: bool,
-}
-
-impl<S: AsRef<[Segment]>> Feeder<S> {
-    /// `dark` shuts every segment's gate: a dry run.
-    pub const fn new(segments: S, dark: bool) -> Self {
-        Self { segments, dark, next: 0, finished: false }
-    }
-
-    /// Sends as many segments as the rig takes now, then the end of the job.
-    pub fn feed(&mut self, rig: &mut impl Rig) {
-        while let Some(&segment) = self.segments.as_ref().get(self.next) {
-            let segment = Segment { gate: segment.gate && !self.dark, ..segment };
-            if rig.send(Command::Append(segment)).is_err() {
-                return;
-            }
-            self.next += 1;
-        }
-        if !self.finished {
-            self.finished = rig.send(Command::Finish).is_ok();
-        }
-    }
 }

@@ -4,7 +4,10 @@
 //! segments, says in which [`State`] it is, and tells [`Event`]s.
 
 mod event;
+mod feed;
+mod follow;
 mod job;
+mod outbox;
 mod request;
 mod running;
 mod session;
@@ -12,7 +15,8 @@ mod state;
 mod told;
 
 pub use event::{Event, Snapshot, seconds};
-pub use job::{Again, Feeder, Job, Repeated, StrokeTicks};
+pub use feed::{Feeder, Trim, Untrimmed};
+pub use job::{Again, Job, Repeated, StrokeTicks};
 pub use request::{Refused, Request, When, faster, slower};
 pub use session::Session;
 pub use state::{ARMED_TICKS, ATTENDED_TICKS, PAUSED_TICKS, State};

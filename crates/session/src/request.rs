@@ -17,9 +17,16 @@ pub enum When {
 pub enum Request {
     /// Take the joints to be at these counts.
     Home(PanTilt<i32>),
+    /// Forget where the joints are.
+    Unhome,
+    /// Let a head that is not homed be turned in the dark by dry jobs, and let out dots, until it is homed. Somebody armed before.
+    Seek,
+    /// Let out a dot of light for so many ticks where the head rests: on the way of a job that paused, or while its zero is sought. The light's budget
+    /// may make it shorter.
+    Mark(u16),
     /// Allow the next job to light. It is forgotten after [`ARMED_TICKS`](crate::ARMED_TICKS).
     Arm,
-    /// Take that back.
+    /// Take that back; of a dot, end it.
     Disarm,
     /// Trace a job from its beginning.
     Trace(Job),
@@ -44,6 +51,9 @@ impl Request {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Home(_) => "home",
+            Self::Unhome => "unhome",
+            Self::Seek => "seek",
+            Self::Mark(_) => "mark",
             Self::Arm => "arm",
             Self::Disarm => "disarm",
             Self::Trace(_) => "trace",
@@ -86,6 +96,9 @@ pub enum Refused {
         /// How far the joint is that is further off, rad.
         off_rad: f32,
     },
+    /// The head is where the job begins, and moves.
+    #[error("the head moves: wait until it rests")]
+    Moving,
     /// The speed is out of its bounds.
     #[error("a speed of {asked} is not between {} and {}", SPEED_RANGE.0, SPEED_RANGE.1)]
     Speed {
@@ -103,7 +116,9 @@ pub enum Refused {
 /// What may be asked in a state.
 pub(crate) const fn advice(state: State) -> &'static str {
     match state {
-        State::Unhomed => "home the head first",
+        State::Unhomed => "home the head first, or arm and seek",
+        State::Homing => "home it, or stop",
+        State::Marking => "wait until the dot is out, or stop",
         State::Ready | State::Done => "arm, then trace",
         State::Armed => "trace or resume, or disarm",
         State::Tracing

@@ -1,11 +1,12 @@
-use tracelight_rig::{Phase, Segment, Telemetry};
+use tracelight_rig::{Phase, Rig, Segment, Telemetry};
 
-use crate::job::{Again, Feeder, Job, StrokeTicks, stroke_at, ticks_of};
+use crate::feed::{Feeder, Trim};
+use crate::job::{Again, Job, StrokeTicks, stroke_at, ticks_of};
 
 /// The job in hand.
 #[derive(Clone, Debug)]
 pub(crate) struct Running {
-    pub(crate) feeder: Feeder<Vec<Segment>>,
+    feeder: Feeder<Vec<Segment>>,
     pub(crate) strokes: Vec<StrokeTicks>,
     pub(crate) ticks: u32,
     pub(crate) first: u32,
@@ -39,6 +40,11 @@ impl Running {
             stroke: None,
             answered: false,
         }
+    }
+
+    /// Sends what is soon due.
+    pub(crate) fn feed(&mut self, rig: &mut impl Rig, trim: &mut impl Trim) {
+        self.feeder.feed_trimmed(rig, self.plan_tick, trim);
     }
 
     /// Takes the way on which it is done again in hand.

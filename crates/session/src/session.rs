@@ -1,43 +1,44 @@
 use std::collections::VecDeque;
 
-use tracelight_rig::{Command, PanTilt, Phase, Rig, SPEED_RANGE, Telemetry};
+use tracelight_rig::{Command, PanTilt, Rig, SPEED_RANGE, Telemetry};
 
 use crate::event::{Event, Snapshot};
+use crate::feed::{Trim, Untrimmed};
 use crate::job::{Job, stroke_at};
+use crate::outbox::Outbox;
 use crate::request::{Refused, Request, When, advice};
 use crate::running::Running;
 use crate::state::{ARMED_TICKS, ATTENDED_TICKS, PAUSED_TICKS, State};
 
 /// A head within this of where a job begins is there, rad: a little less than the controller allows.
-const THERE_RAD: f32 = 1.5e-3;
+pub(crate) const THERE_RAD: f32 = 1.5e-3;
 /// Slower than this a head rests, rad/s.
 const REST_RAD_S: f32 = 5e-3;
-/// Commands that may wait for a rig which takes none.
-const MOST_WAITING: usize = 16;
-/// How long a rig may take to say that it is armed, ticks: a wire and a queue in between.
-const ANSWER_TICKS: u32 = 250;
+/// Slower than this a job may begin, rad/s: a head at rest hunts for its place within a count.
+const START_RAD_S: f32 = 0.02;
 /// Events that are kept for whoever does not fetch them; older ones go.
 const MOST_EVENTS: usize = 4096;
 
 /// One rig and at most one job.
 #[derive(Clone, Debug)]
 pub struct Session<R> {
-    rig: R,
-    state: State,
+    pub(crate) rig: R,
+    pub(crate) state: State,
     /// The state in which it was armed, which comes back when that is over.
-    armed_in: State,
+    pub(crate) armed_in: State,
     /// Tick in which it was armed, or paused, or the rig was asked to go on.
-    since: u32,
-    running: Option<Running>,
+    pub(crate) since: u32,
+    pub(crate) running: Option<Running>,
     /// What is begun once it is parked.
-    next: Option<Job>,
+    pub(crate) next: Option<Job>,
     /// Tick in which something was asked last.
-    asked: u32,
-    speed: f32,
-    told: Telemetry,
-    /// Commands that the rig did not take yet, in order.
-    outbox: VecDeque<Command>,
-    events: VecDeque<Event>,
+    pub(crate) asked: u32,
+    pub(crate) speed: f32,
+    pub(crate) told: Telemetry,
+    pub(crate) outbox: Outbox,
+    /// How long the dot is that is let out, ticks.
+    pub(crate) mark_ticks: u32,
+    pub(crate) events: VecDeque<Event>,
 }
 
 impl<R: Rig> Session<R> {
@@ -53,7 +54,8 @@ impl<R: Rig> Session<R> {
             asked: 0,
             speed: 1.0,
             told: Telemetry::default(),
-            outbox: VecDeque::new(),
+            outbox: Outbox::default(),
+            mark_ticks: 0,
             events: VecDeque::new(),
         };
         session.send(Command::Disarm);
@@ -111,23 +113,40 @@ impl<R: Rig> Session<R> {
     /// # Errors
     /// Why it is refused; nothing has changed then.
     pub fn request(&mut self, request: Request) -> Result<(), Refused> {
-        use State::{Armed, Done, Fault, Parking, Paused, Pausing, Ready, Returning, Stopped, Unhomed};
-        if self.outbox.len() >= MOST_WAITING && request != Request::Stop {
+        use State::{
+            Armed, Done, Fault, Homing, Marking, Parking, Paused, Pausing, Ready, Returning, Stopped, Unhomed,
+        };
+        if self.outbox.is_full() && request != Request::Stop {
             return Err(Refused::Busy);
         }
         self.asked = self.told.tick;
         match (request, self.state) {
             (Request::Stop, _) => self.stop(),
             (Request::Speed(rate), _) => self.set_speed(rate)?,
-            (Request::Home(counts), Unhomed | Ready | Done) => self.home(counts)?,
-            (Request::Arm, Ready | Done | Stopped | Paused) => {
+            (Request::Home(counts), Unhomed | Homing | Ready | Done) => self.home(counts)?,
+            (Request::Unhome, state) if state != State::Lost => {
+                (self.running, self.next) = (None, None);
+                self.send(Command::Unhome);
+                if state != Fault {
+                    self.enter(Unhomed);
+                }
+            }
+            (Request::Arm, Unhomed | Ready | Done | Stopped | Paused) => {
                 self.armed_in = self.state;
                 self.since = self.told.tick;
                 self.enter(Armed);
             }
             (Request::Disarm, Armed) => self.let_arming_go(),
-            (Request::Trace(job), Ready | Done | Armed) if self.state != Armed || !self.is_resumable() => {
+            (Request::Seek, Armed) if self.armed_in == Unhomed => self.enter(Homing),
+            (Request::Trace(job), Homing) => self.turn(job)?,
+            (Request::Trace(job), Ready | Done | Armed) if self.state != Armed || self.may_begin() => {
                 self.begin(job)?;
+            }
+            (Request::Mark(ticks), Homing | Paused) => self.mark(ticks)?,
+            (Request::Disarm, Homing) => self.send(Command::Disarm),
+            (Request::Disarm, Marking) => {
+                self.send(Command::Disarm);
+                self.enter(Paused);
             }
             (Request::Resume, Armed) if self.is_resumable() => self.resume(),
             (Request::Resume, Paused | Stopped) => {
@@ -139,7 +158,7 @@ impl<R: Rig> Session<R> {
                 self.next = Some(job);
             }
             (Request::Next(job), state)
-                if state == Armed
+                if state == Armed && self.armed_in != Unhomed
                     || self.on().repeats()
                         && (state.repeats() || matches!(state, Returning | Pausing | Paused)) =>
             {
@@ -158,7 +177,7 @@ impl<R: Rig> Session<R> {
                     .into_iter()
                     .for_each(|command| self.send(command));
             }
-            (Request::Park, Ready | Done | Stopped | Paused) => self.park(),
+            (Request::Park, Unhomed | Homing | Ready | Done | Stopped | Paused) => self.park(),
             (request, state) => {
                 return Err(Refused::State { request: request.name(), state, advice: advice(state) });
             }
@@ -168,61 +187,57 @@ impl<R: Rig> Session<R> {
 
     /// Lets the rig run for a tick; `None` once it is gone.
     pub fn tick(&mut self) -> Option<Telemetry> {
-        self.tick_by(R::next, |telemetry| telemetry)
-    }
-
-    /// Lets a rig run for a tick that tells more of it than its telemetry; `None` once it is gone.
-    pub fn tick_by<T>(
-        &mut self,
-        step: impl FnOnce(&mut R) -> Option<T>,
-        telemetry: impl FnOnce(&T) -> &Telemetry,
-    ) -> Option<T> {
-        if self.state != State::Lost {
-            self.send(Command::KeepAlive);
-            if let Some(running) = &mut self.running
-                && self.outbox.is_empty()
-            {
-                running.feeder.feed(&mut self.rig);
-            }
-        }
-        let Some(tick) = step(&mut self.rig) else {
+        self.before_tick(&mut Untrimmed);
+        let Some(told) = self.rig.next() else {
             self.running = None;
             self.outbox.clear();
             self.enter(State::Lost);
             return None;
         };
+        self.told = told;
+        self.follow();
+        Some(told)
+    }
+
+    /// Lets a rig run for a tick that is always there, and tells more of it than its telemetry; the job's segments are trimmed on their way.
+    pub fn tick_by<T>(
+        &mut self,
+        step: impl FnOnce(&mut R) -> T,
+        telemetry: impl FnOnce(&T) -> &Telemetry,
+        trim: &mut impl Trim,
+    ) -> T {
+        self.before_tick(trim);
+        let tick = step(&mut self.rig);
         self.told = *telemetry(&tick);
         self.follow();
-        Some(tick)
+        tick
+    }
+
+    /// Sends what is due.
+    fn before_tick(&mut self, trim: &mut impl Trim) {
+        if self.state != State::Lost {
+            self.send(Command::KeepAlive);
+            if let Some(running) = &mut self.running
+                && self.outbox.is_empty()
+            {
+                running.feed(&mut self.rig, trim);
+            }
+        }
     }
 
     /// Sends a command, behind those that the rig did not take yet.
-    fn send(&mut self, command: Command) {
-        if command == Command::Disarm {
-            // nothing that was asked before may come after it
-            self.outbox.clear();
-        }
-        match self.outbox.back_mut() {
-            // the newer one counts, and the same again adds nothing
-            Some(last) if std::mem::discriminant(last) == std::mem::discriminant(&command) => *last = command,
-            _ => self.outbox.push_back(command),
-        }
-        while let Some(&command) = self.outbox.front() {
-            if self.rig.send(command).is_err() {
-                return;
-            }
-            self.outbox.pop_front();
-        }
+    pub(crate) fn send(&mut self, command: Command) {
+        self.outbox.send(command, &mut self.rig);
     }
 
-    fn enter(&mut self, to: State) {
+    pub(crate) fn enter(&mut self, to: State) {
         let from = std::mem::replace(&mut self.state, to);
         if from != to {
             self.tell(Event::State { tick: self.told.tick, from, to });
         }
     }
 
-    fn tell(&mut self, event: Event) {
+    pub(crate) fn tell(&mut self, event: Event) {
         if self.events.len() >= MOST_EVENTS {
             self.events.pop_front();
         }
@@ -230,12 +245,17 @@ impl<R: Rig> Session<R> {
     }
 
     /// Ticks since it was armed, or paused, or the rig was asked to go on.
-    const fn waited(&self) -> u32 {
+    pub(crate) const fn waited(&self) -> u32 {
         self.told.tick.wrapping_sub(self.since)
     }
 
     const fn is_resumable(&self) -> bool {
         matches!(self.armed_in, State::Stopped | State::Paused)
+    }
+
+    /// Whether it was armed for a job from its beginning.
+    const fn may_begin(&self) -> bool {
+        !self.is_resumable() && !matches!(self.armed_in, State::Unhomed)
     }
 
     fn let_arming_go(&mut self) {
@@ -265,8 +285,13 @@ impl<R: Rig> Session<R> {
         self.send(Command::Disarm);
         self.next = None;
         match self.state {
-            State::Paused => self.enter(State::Stopped),
+            State::Paused | State::Marking => self.enter(State::Stopped),
             state if state.is_on() => self.enter(State::Stopped),
+            State::Homing => {
+                self.running = None;
+                self.enter(State::Unhomed);
+            }
+            State::Armed if self.armed_in == State::Unhomed => self.enter(State::Unhomed),
             State::Armed if self.is_resumable() => self.enter(State::Stopped),
             State::Armed => self.enter(State::Ready),
             _ => {}
@@ -292,6 +317,32 @@ impl<R: Rig> Session<R> {
         Ok(())
     }
 
+    /// Lets a dot out where the head rests, if light was allowed before.
+    fn mark(&mut self, ticks: u16) -> Result<(), Refused> {
+        if self.state == State::Paused {
+            self.check_resume()?;
+            if self.running.as_ref().is_none_or(|running| running.dry) {
+                return Err(Refused::NotArmed);
+            }
+            self.mark_ticks = u32::from(ticks);
+            self.since = self.told.tick;
+            self.enter(State::Marking);
+        }
+        self.send(Command::Point(ticks));
+        Ok(())
+    }
+
+    /// Turns a head that is not homed, in the dark; nobody knows where it is but by what it was told before.
+    fn turn(&mut self, job: Job) -> Result<(), Refused> {
+        check(&job)?;
+        if !job.dry {
+            return Err(Refused::NotArmed);
+        }
+        self.running = Some(Running::of(job));
+        self.arm_rig();
+        Ok(())
+    }
+
     fn begin(&mut self, job: Job) -> Result<(), Refused> {
         check(&job)?;
         if !job.dry && self.state != State::Armed {
@@ -301,14 +352,17 @@ impl<R: Rig> Session<R> {
     }
 
     /// Begins a job where the head rests.
-    fn start(&mut self, job: Job) -> Result<(), Refused> {
+    pub(crate) fn start(&mut self, job: Job) -> Result<(), Refused> {
         let Some(first) = job.segments.first() else { return Err(Refused::Empty) };
         let start = first.sample(0.0);
         let off = PanTilt::from_fn(|j| (start[j].position_rad - self.told.position_rad[j]).abs());
         let off_rad = off.pan.max(off.tilt);
         // what is not a number is nowhere
-        if off_rad > THERE_RAD || off_rad.is_nan() || !self.rests() {
+        if off_rad > THERE_RAD || off_rad.is_nan() {
             return Err(Refused::Elsewhere { off_rad });
+        }
+        if !self.is_slower_than(START_RAD_S) {
+            return Err(Refused::Moving);
         }
         self.running = Some(Running::of(job));
         self.go_on();
@@ -338,8 +392,13 @@ impl<R: Rig> Session<R> {
         }
     }
 
-    /// Arms the rig: a job begins, or goes on.
-    fn go_on(&mut self) {
+    /// A job begins, or goes on.
+    pub(crate) fn go_on(&mut self) {
+        self.arm_rig();
+        self.enter(self.on());
+    }
+
+    fn arm_rig(&mut self) {
         let acknowledges = self.told.fault_number;
         self.send(Command::KeepAlive);
         self.send(Command::Arm { acknowledges });
@@ -347,17 +406,16 @@ impl<R: Rig> Session<R> {
         if let Some(running) = &mut self.running {
             running.answered = false;
         }
-        self.enter(self.on());
     }
 
     /// The state of the job in hand while its clock runs.
-    fn on(&self) -> State {
+    pub(crate) fn on(&self) -> State {
         let again = self.running.as_ref().and_then(|running| running.again.as_ref());
         again.map_or(State::Tracing, |again| again.what.state())
     }
 
     /// Begins a job again that is done again and again, once it was dark for long enough.
-    fn begin_again(&mut self) {
+    pub(crate) fn begin_again(&mut self) {
         let is_ready = self.state.repeats() && !self.is_unattended() && self.rests();
         let Some(running) = self.running.as_mut().filter(|_| is_ready) else { return };
         let (Some(again), Some(ended)) = (&running.again, running.ended) else { return };
@@ -372,110 +430,18 @@ impl<R: Rig> Session<R> {
     }
 
     /// Whether nothing was asked for so long that nobody may be there.
-    const fn is_unattended(&self) -> bool {
+    pub(crate) const fn is_unattended(&self) -> bool {
         self.told.tick.wrapping_sub(self.asked) > ATTENDED_TICKS
     }
 
-    fn rests(&self) -> bool {
+    pub(crate) fn rests(&self) -> bool {
+        self.is_slower_than(REST_RAD_S)
+    }
+
+    /// What is not a number is fast.
+    fn is_slower_than(&self, rad_s: f32) -> bool {
         let PanTilt { pan, tilt } = self.told.velocity_rad_s;
-        pan.abs().max(tilt.abs()) < REST_RAD_S
-    }
-
-    /// What the last tick means for the state.
-    fn follow(&mut self) {
-        let Telemetry { tick, fault, homed, .. } = self.told;
-        if let Some(fault) = fault {
-            self.next = None;
-            if self.state != State::Fault {
-                self.tell(Event::Fault { tick, fault });
-                self.enter(State::Fault);
-            }
-            return;
-        }
-        if !homed {
-            self.running = None;
-            self.next = None;
-            self.enter(State::Unhomed);
-            return;
-        }
-        self.follow_job();
-        self.begin_again();
-        match self.next_state() {
-            State::Ready => {
-                self.running = None;
-                self.enter(State::Ready);
-                // whoever asked for it armed the one before; what is held up for long is armed anew
-                let next = self.next.take().filter(|job| job.dry || self.waited() <= PAUSED_TICKS);
-                if let Some(Err(why)) = next.map(|job| self.start(job)) {
-                    self.tell(Event::NotBegun { tick, why });
-                }
-            }
-            State::Done if self.state.repeats() => {
-                self.running = None;
-                self.send(Command::Disarm);
-                self.enter(State::Done);
-            }
-            State::Paused if self.state == State::Pausing => {
-                self.since = tick;
-                self.enter(State::Paused);
-            }
-            next => self.enter(next),
-        }
-    }
-
-    /// The state after a tick without a fault of a rig that is homed.
-    fn next_state(&self) -> State {
-        let phase = self.told.phase;
-        let answered = self.running.as_ref().is_some_and(|running| running.answered);
-        let is_again = self.on().repeats();
-        // between two times it is dark, and waits
-        let has_ended = self.running.as_ref().is_some_and(|running| running.ended.is_some());
-        match self.state {
-            State::Unhomed => State::Ready,
-            State::Fault if self.has_begun() => State::Stopped,
-            State::Fault => State::Ready,
-            State::Armed if self.waited() >= ARMED_TICKS => self.armed_in,
-            State::Pausing if is_again && phase == Phase::Done => State::Paused,
-            state if state.repeats() && has_ended && self.is_unattended() => State::Done,
-            State::Tracing | State::Returning | State::Pausing
-                if answered && !is_again && phase == Phase::Done =>
-            {
-                State::Done
-            }
-            // an open interlock, for instance, keeps it from arming
-            state
-                if (state.traces() || state == State::Returning)
-                    && phase == Phase::Dark
-                    && !has_ended
-                    && (answered || self.waited() > ANSWER_TICKS) =>
-            {
-                State::Stopped
-            }
-            state if state.traces() && matches!(phase, Phase::Holding | Phase::Testing) => State::Returning,
-            State::Returning if matches!(phase, Phase::Tracing | Phase::Done) => self.on(),
-            State::Pausing if phase == Phase::Dark => State::Paused,
-            State::Parking if self.is_parked() => State::Ready,
-            state => state,
-        }
-    }
-
-    fn has_begun(&self) -> bool {
-        self.running.as_ref().is_some_and(|running| running.plan_tick > 0)
-    }
-
-    fn is_parked(&self) -> bool {
-        let PanTilt { pan, tilt } = self.told.position_rad;
-        pan.abs().max(tilt.abs()) < THERE_RAD && self.rests()
-    }
-
-    /// Where the job is now.
-    fn follow_job(&mut self) {
-        let is_on = self.state.is_on();
-        let Some(running) = self.running.as_mut().filter(|_| is_on) else { return };
-        let of = running.of;
-        if let Some(stroke) = running.follow(&self.told) {
-            self.tell(Event::Stroke { tick: self.told.tick, stroke, of });
-        }
+        pan.abs() < rad_s && tilt.abs() < rad_s
     }
 }
 

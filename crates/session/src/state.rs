@@ -19,11 +19,19 @@ pub const ATTENDED_TICKS: u32 = 600_000;
 ///     └── Clear ──────────────►┘
 /// ```
 ///
+/// ```text
+///  Unhomed ◄── Arm ──► Armed ── Seek ──► Homing ── Home ──► Ready        Paused ── Mark ──► Marking ── its end ──► Paused
+///     ▲                                     │
+///     └──────────────── Stop ───────────────┘
+/// ```
+///
 /// A job that is done again and again is `Stepping`, `Pointing` or `Framing` where another one is `Tracing`; `Next` parks it and begins another one. A dry job needs no arming: it goes from `Ready`, `Done`, `Stopped` or `Paused` to `Tracing`. `Lost` is entered from anywhere, and never left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum State {
     /// The rig does not know where it points.
     Unhomed,
+    /// The head is turned in the dark and lets out dots, to find where it points.
+    Homing,
     /// Dark, at rest, without a job.
     Ready,
     /// Somebody armed: a job may begin, or go on, within [`ARMED_TICKS`](crate::ARMED_TICKS). Still dark.
@@ -44,6 +52,8 @@ pub enum State {
     Paused,
     /// Dark on the way of a job that was stopped. It goes on only after somebody has armed again.
     Stopped,
+    /// A dot is let out where the head rests on the way of a job.
+    Marking,
     /// Returns to zero in the dark; the job is forgotten.
     Parking,
     /// The job is done.
@@ -56,8 +66,9 @@ pub enum State {
 
 impl State {
     /// Every state.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::Unhomed,
+        Self::Homing,
         Self::Ready,
         Self::Armed,
         Self::Tracing,
@@ -68,6 +79,7 @@ impl State {
         Self::Pausing,
         Self::Paused,
         Self::Stopped,
+        Self::Marking,
         Self::Parking,
         Self::Done,
         Self::Fault,
@@ -78,6 +90,7 @@ impl State {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Unhomed => "unhomed",
+            Self::Homing => "homing",
             Self::Ready => "ready",
             Self::Armed => "armed",
             Self::Tracing => "tracing",
@@ -88,6 +101,7 @@ impl State {
             Self::Pausing => "pausing",
             Self::Paused => "paused",
             Self::Stopped => "stopped",
+            Self::Marking => "marking",
             Self::Parking => "parking",
             Self::Done => "done",
             Self::Fault => "fault",
@@ -97,7 +111,7 @@ impl State {
 
     /// Whether light may leave the head.
     pub const fn may_light(self) -> bool {
-        self.traces() || matches!(self, Self::Pausing)
+        self.traces() || matches!(self, Self::Pausing | Self::Homing | Self::Marking)
     }
 
     /// Whether the plan's clock runs for a job, done once or again and again.

@@ -6,7 +6,7 @@ use tracelight_plant::Plant;
 use tracelight_rig::{
     Actuation, Command, Fault, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, TICK_F64_S, Telemetry,
 };
-use tracelight_session::{Feeder, Job, StrokeTicks};
+use tracelight_session::{Feeder, Job, Session, StrokeTicks, Trim, Untrimmed};
 use tracelight_stroke::Point;
 use tracelight_trajectory::Plan;
 
@@ -265,6 +265,20 @@ pub trait Simulated: Rig {
     fn patience_ticks(&self) -> usize;
 }
 
+impl<S: Simulated + ?Sized> Simulated for &mut S {
+    fn step(&mut self) -> Tick {
+        (**self).step()
+    }
+
+    fn told(&self) -> &Telemetry {
+        (**self).told()
+    }
+
+    fn patience_ticks(&self) -> usize {
+        (**self).patience_ticks()
+    }
+}
+
 impl Simulated for SimulatedRig {
     fn step(&mut self) -> Tick {
         self.tick()
@@ -287,6 +301,16 @@ impl Rig for SimulatedRig {
     fn next(&mut self) -> Option<Telemetry> {
         Some(self.step().telemetry)
     }
+}
+
+/// Lets a session with a simulated rig run for a tick, with the truth.
+pub fn tick<R: Simulated>(session: &mut Session<R>) -> Tick {
+    tick_trimmed(session, &mut Untrimmed)
+}
+
+/// Does the same with a job whose segments are moved on their way to the rig.
+pub fn tick_trimmed<R: Simulated>(session: &mut Session<R>, trim: &mut impl Trim) -> Tick {
+    session.tick_by(R::step, |tick| &tick.telemetry, trim)
 }
 
 /// Returns a plan as a session takes it; a dry one is traced in the dark.

@@ -40,6 +40,8 @@ pub(crate) struct AtWall<'a> {
     points: bool,
     /// The frame is drawn.
     framing: bool,
+    /// A camera looks into what is off.
+    looks: bool,
     /// After so many ticks on one stroke or point the next one follows.
     each_ticks: Option<u32>,
     /// Tick since which it is on one.
@@ -58,8 +60,9 @@ impl<'a> AtWall<'a> {
         let clock = real_time.map(|factor| Pace::new(TICK_F64_S / factor));
         let framing = args.frame.is_some();
         let each_ticks = args.each.map(|time_s| (time_s / TICK_F64_S) as u32);
-        let (events, points, on_it_since) = (args.events, false, None);
-        Some(Self { task, stop, clock, keys, events, steps, points, framing, each_ticks, on_it_since })
+        let (events, on_it_since) = (args.events, None);
+        let (points, looks) = (false, false);
+        Some(Self { task, stop, clock, keys, events, steps, points, framing, looks, each_ticks, on_it_since })
     }
 
     fn help(&self) {
@@ -172,6 +175,14 @@ impl Hands for AtWall<'_> {
         }
     }
 
+    fn looks(&mut self, on: bool) {
+        self.looks = on;
+        self.print(&json!({"event": "looks", "on": on}));
+        if on && self.keys.is_some() {
+            self.task.say("something is off: dark, and the camera looks into it");
+        }
+    }
+
     fn goes_to(&mut self, point: &Place, number: u32, of: u32) {
         self.points = true;
         self.print(&point_json(point, (number, of)));
@@ -182,6 +193,8 @@ impl Hands for AtWall<'_> {
         let words = match *event {
             // who starts the program has armed it
             Event::State { tick: 0, .. } => None,
+            // a pause of the camera's is nobody's to end
+            Event::State { to: State::Pausing | State::Paused, .. } if self.looks => None,
             Event::State { to, .. } => words(to).map(str::to_owned),
             Event::Stroke { stroke, of, .. } => {
                 (self.steps && !self.points).then(|| format!("stroke {} of {of}", stroke + 1))
@@ -217,6 +230,7 @@ const fn words(state: State) -> Option<&'static str> {
         State::Stopped => Some("stopped, dark: A arms, then Enter goes on; Q ends"),
         State::Returning => Some("dark, on its way back to the stroke"),
         State::Armed => Some("armed for 10 s: Enter goes on"),
+        State::Unhomed => Some("dark: the head does not know any more where it points; Q ends"),
         _ => None,
     }
 }

@@ -1,13 +1,12 @@
 //! A head that lost counts while it drew: homed again by a dot where the camera should see one.
 
-use tracelight_sim::Simulated;
 use tracelight_task::Failure;
 
-use crate::Eye;
+use crate::Driven;
 use crate::head::{ACROSS_AGAIN, dots};
 use crate::homing::state::{Homed, Homing, anywhere};
 
-impl<R: Simulated + Eye> Homing<'_, R> {
+impl<D: Driven> Homing<'_, D> {
     /// Lights dots in sight, of a known head whose counts are not far off, until one is seen; tells the rig where its joints are by that.
     pub(super) fn home_again(&mut self) -> Result<Homed, Failure> {
         let change = self.change()?;

@@ -2,15 +2,15 @@
 
 use tracelight_image::Grey;
 use tracelight_markers::{SpotLost, SpotWindow, find_spot};
-use tracelight_rig::{Command, TICK_F64_S};
+use tracelight_rig::TICK_F64_S;
 use tracelight_rigfile::Timing;
-use tracelight_sim::Simulated;
+use tracelight_session::Request;
 use tracelight_stroke::Point;
 use tracelight_task::Failure;
 
 use crate::homing::state::Homing;
 use crate::spots::{Light, WHOLE};
-use crate::{Eye, Looks};
+use crate::{Driven, Looks};
 
 /// How much longer than an image takes a dot is lit, ticks.
 const MORE_TICKS: u16 = 10;
@@ -23,7 +23,7 @@ const MOST_DOTS: usize = 3;
 /// How far apart two images of one dot may show it, px.
 const SAME_PX: f64 = 3.0;
 
-impl<R: Simulated + Eye> Homing<'_, R> {
+impl<D: Driven> Homing<'_, D> {
     /// By how much the wall seems to change by itself, from one image to the next.
     pub(super) fn change(&mut self) -> Result<f64, Failure> {
         const IMAGES: usize = 4;
@@ -56,7 +56,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         for _ in 0..MOST_DOTS {
             self.light()?;
             let lit = self.image(Light::Lit)?;
-            let _ = self.rig.send(Command::Disarm);
+            self.rig.ask(Request::Disarm)?;
             let Some(lit) = lit else { continue };
             let Some(now) = dark.spot(&lit) else { return Ok(None) };
             let after = self.image(Light::Dark)?.and_then(|after| dark.spot(&after));
@@ -70,8 +70,9 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         let Timing { readout_s, unsure_s, .. } = self.timing;
         let image_s = self.rig.longest_s() + self.exposure_s + readout_s + 2.0 * unsure_s;
         let dot_ticks = ((image_s + self.history.switches_s()) / TICK_F64_S) as u16 + MORE_TICKS;
+        self.begin()?;
         for _ in 0..BUDGET_TICKS {
-            let _ = self.rig.send(Command::Point(dot_ticks));
+            self.rig.ask(Request::Mark(dot_ticks))?;
             if self.step()?.actuation.lights() {
                 break;
             }

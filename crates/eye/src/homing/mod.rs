@@ -20,13 +20,13 @@ mod travel;
 use tracelight_aim::{Alignment, Camera, HeadGeometry, HeadPose};
 use tracelight_lab::Quantiles;
 use tracelight_pipeline::Driving;
-use tracelight_rig::{Command, PanTilt};
+use tracelight_rig::PanTilt;
 use tracelight_rigfile::Timing;
-use tracelight_sim::Simulated;
+use tracelight_session::Request;
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Task};
 
-use crate::Eye;
+use crate::Driven;
 use crate::head::{DotsRequest, find_head, see_dots};
 use crate::homing::state::{Homing, REST_TICKS, anywhere};
 use crate::power::check_homed;
@@ -44,8 +44,8 @@ const MOST_APART_COUNTS: f64 = 0.75;
 ///
 /// # Errors
 /// The spot is not found, or the head does not go where it is sent; or [`Failure::interrupted`].
-pub fn home_head<R: Simulated + Eye>(
-    rig: &mut R,
+pub fn home_head<D: Driven>(
+    rig: &mut D,
     camera: &Camera,
     driving: &Driving,
     known: Option<(Timing, f64)>,
@@ -59,12 +59,12 @@ pub fn home_head<R: Simulated + Eye>(
 }
 
 /// Homes a known head again that lost counts, few enough for its dots to be in sight where they should be. The rig rests at zero by its counts,
-/// unhomed, disarmed and dark; afterwards at zero, homed. `images` tells when they are taken and how long they are exposed, s.
+/// unhomed and dark; afterwards at zero, homed. `images` tells when they are taken and how long they are exposed, s.
 ///
 /// # Errors
 /// As for [`home_head`].
-pub fn home_again<R: Simulated + Eye>(
-    rig: &mut R,
+pub fn home_again<D: Driven>(
+    rig: &mut D,
     camera: &Camera,
     driving: &Driving,
     images: (Timing, f64),
@@ -85,15 +85,15 @@ pub fn turned_rad(geometry: &HeadGeometry, pose: &HeadPose) -> Option<PanTilt<f6
 }
 
 /// By how much a known head's joints are truly further than its encoders say, rad: what most dots say.
-fn off_rad<R: Simulated + Eye>(
-    rig: &mut R,
+fn off_rad<D: Driven>(
+    rig: &mut D,
     camera: &Camera,
     driving: &Driving,
     request: &DotsRequest,
     task: Task<'_>,
 ) -> Result<PanTilt<f64>, Failure> {
     let geometry = anywhere(&driving.machine.geometry);
-    let spots = see_dots(rig, camera, driving, request, task, &mut |_| {})?.spots();
+    let spots = see_dots(rig, camera, driving, request, task)?.spots();
     let off: Vec<PanTilt<f64>> = spots
         .iter()
         .filter_map(|spot| {
@@ -120,18 +120,15 @@ fn off_rad<R: Simulated + Eye>(
     Ok(middle)
 }
 
-impl<R: Simulated + Eye> Homing<'_, R> {
+impl<D: Driven> Homing<'_, D> {
     /// Dark whatever became of it; and a guess is not to be drawn by.
     fn left(&mut self, homed: Result<Homed, Failure>) -> Result<Homed, Failure> {
-        let _ = self.rig.send(Command::Disarm);
-        if homed.is_err() {
-            let _ = self.rig.send(Command::Unhome);
-        }
+        let darkened = self.rig.ask(Request::Stop);
+        let forgotten = if homed.is_err() { self.rig.ask(Request::Unhome) } else { Ok(()) };
         for _ in 0..REST_TICKS {
-            let _ = self.rig.send(Command::KeepAlive);
-            self.rig.step();
+            self.rig.step()?;
         }
-        homed
+        homed.and_then(|homed| darkened.and(forgotten).map(|()| homed))
     }
 
     fn home(&mut self, is_known: bool, task: Task<'_>) -> Result<Homed, Failure> {
@@ -142,7 +139,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             off_rad(self.rig, self.camera, self.driving, &few, task)?
         } else {
             let all = DotsRequest::first(self.driving);
-            let found = find_head(self.rig, self.camera, self.driving, &all, task, &mut |_| {})?;
+            let found = find_head(self.rig, self.camera, self.driving, &all, task)?;
             let Alignment { geometry, pose, .. } = found.aligned.alignment;
             turned_rad(&geometry, &pose).ok_or_else(|| {
                 Failure::failed("head-not-found", "the head as its dots tell does not face the wall: turn it by hand so that it does, and home it again")
@@ -188,11 +185,12 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             (true_rad[j] / self.count_rad() - f64::from(now.measured[j].count)).round() as i32
         });
         let counts = PanTilt::from_fn(|j| now.measured[j].count + by[j]);
-        if self.rig.send(Command::Home(counts)).is_err() {
+        if self.rig.ask(Request::Home(counts)).is_err() {
             let message = "the rig does not take where its joints are: they move, or they cannot be there; let it come to rest, and home it again";
             return Err(Failure::failed("unfinished", message));
         }
         self.counts = PanTilt::from_fn(|j| self.counts[j] + by[j]);
+        self.rest(1)?;
         self.zero("the head does not come to where it was told zero is: is something in its way?")?;
         check_homed(&self.rest(1)?)
     }

@@ -1,16 +1,15 @@
 //! Where dots are lit, one after the other, until one is seen.
 
 use tracelight_rig::{Joint, PanTilt};
-use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
 
-use crate::Eye;
+use crate::Driven;
 use crate::homing::state::{Homing, anywhere};
 
 /// From one dot to the next, as a share of what the camera sees: one of them at least falls well within it.
 const STRIDE: f64 = 0.6;
 
-impl<R: Simulated + Eye> Homing<'_, R> {
+impl<D: Driven> Homing<'_, D> {
     /// How far from where they were powered up joints must turn to have the camera see a dot, wherever in their ranges they were left, rad.
     pub(super) fn reach_rad(&self) -> PanTilt<(f64, f64)> {
         let [width, height] = self.camera.lens.size_px.map(|n| n as f64);

@@ -4,10 +4,9 @@ use tracelight_aim::{Camera, HeadGeometry};
 use tracelight_pipeline::Driving;
 use tracelight_rig::PanTilt;
 use tracelight_rigfile::Timing;
-use tracelight_sim::Simulated;
 use tracelight_task::Task;
 
-use crate::Eye;
+use crate::Driven;
 use crate::figures::HomedFigures;
 use crate::head::SPOT_EXPOSURE_S;
 use crate::spots::History;
@@ -45,8 +44,8 @@ pub(super) fn anywhere(geometry: &HeadGeometry) -> HeadGeometry {
 }
 
 /// A rig that is being homed, and what is known meanwhile.
-pub(super) struct Homing<'a, R> {
-    pub(super) rig: &'a mut R,
+pub(super) struct Homing<'a, D> {
+    pub(super) rig: &'a mut D,
     pub(super) camera: &'a Camera,
     pub(super) driving: &'a Driving,
     pub(super) task: Task<'a>,
@@ -62,9 +61,9 @@ pub(super) struct Homing<'a, R> {
     pub(super) stops: usize,
 }
 
-impl<'a, R: Simulated + Eye> Homing<'a, R> {
+impl<'a, D: Driven> Homing<'a, D> {
     pub(super) fn new(
-        rig: &'a mut R,
+        rig: &'a mut D,
         camera: &'a Camera,
         driving: &'a Driving,
         known: Option<(Timing, f64)>,

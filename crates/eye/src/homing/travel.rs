@@ -1,11 +1,11 @@
 //! How a head goes round of which nobody knows where it points: gently, a joint at a time, and back from whatever is in its way.
 
-use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, RateLimit, Segment, TICK_F64_S, Telemetry};
-use tracelight_sim::{Simulated, arm};
+use tracelight_rig::{Fault, Joint, PanTilt, Phase, RateLimit, Segment, TICK_F64_S, Telemetry};
+use tracelight_session::{Job, Request, State};
 use tracelight_task::Failure;
 use tracelight_trajectory::JointMotion;
 
-use crate::Eye;
+use crate::Driven;
 use crate::homing::state::{BEFORE_STOP_RAD, Homing, REST_TICKS};
 
 /// Fastest and most sudden motion of a joint of which nobody knows where it is, rad/s and rad/s².
@@ -21,11 +21,8 @@ const SAME_STRIDES: f64 = 0.25;
 const SWING_TICKS: u32 = 300;
 /// Longest that a head takes to go to zero, ticks.
 const HOMEWARD_TICKS: u32 = 15_000;
-/// How near to it is there, rad, and how slow at rest, rad/s.
-const THERE_RAD: f32 = 3e-3;
-const STILL_RAD_S: f32 = 0.01;
 
-impl<R: Simulated + Eye> Homing<'_, R> {
+impl<D: Driven> Homing<'_, D> {
     /// Goes to a place, or as near to it as a stop lets it, one joint after the other; where it is then, unless a dot was tried there before.
     pub(super) fn reach(
         &mut self,
@@ -98,8 +95,18 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             ));
         }
         // what the fault was is known, and what it means here
-        arm(self.rig);
+        self.rig.ask(Request::Clear)?;
+        self.rest(1)?;
         self.zero("the head does not come back from where something was in its way: is it free?")
+    }
+
+    /// Has the session turn the head and let out dots: who homes it has armed it.
+    pub(super) fn begin(&mut self) -> Result<(), Failure> {
+        if self.rig.session().state() == State::Homing {
+            return Ok(());
+        }
+        self.rig.ask(Request::Arm)?;
+        self.rig.ask(Request::Seek)
     }
 
     /// Moves in the dark from rest to rest, by its encoders, and rests; the fault that ended it, if one did.
@@ -128,10 +135,8 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             gate: false,
             rate_limit,
         };
-        arm(self.rig);
-        for command in [Command::Append(segment), Command::Finish] {
-            let _ = self.rig.send(command);
-        }
+        self.begin()?;
+        self.rig.ask(Request::Trace(Job { segments: vec![segment], dry: true, ..Job::default() }))?;
         let most = 2 * segment.ticks + 5000;
         for _ in 0..most {
             let now = self.tick()?;
@@ -139,7 +144,6 @@ impl<R: Simulated + Eye> Homing<'_, R> {
                 return Ok(now.fault);
             }
             if now.phase == Phase::Done {
-                let _ = self.rig.send(Command::Disarm);
                 return self.fault_at_rest();
             }
         }
@@ -160,31 +164,14 @@ impl<R: Simulated + Eye> Homing<'_, R> {
 
     /// Forgets what was to be done, and goes to where both encoders read zero; what it is told if it does not come there.
     pub(super) fn zero(&mut self, otherwise: &str) -> Result<(), Failure> {
-        let _ = self.rig.send(Command::Abandon);
-        let is_there = |now: &Telemetry| {
-            let near =
-                |j: Joint| now.position_rad[j].abs() < THERE_RAD && now.velocity_rad_s[j].abs() < STILL_RAD_S;
-            Joint::BOTH.into_iter().all(near)
-        };
-        if self.until(HOMEWARD_TICKS, is_there)?.is_none() {
-            return Err(Failure::failed("unfinished", otherwise));
-        }
-        self.rest(REST_TICKS).map(|_| ())
-    }
-
-    /// Lets ticks pass until something holds; `None` if it never does.
-    fn until(
-        &mut self,
-        ticks: u32,
-        holds: impl Fn(&Telemetry) -> bool,
-    ) -> Result<Option<Telemetry>, Failure> {
-        for _ in 0..ticks {
-            let now = self.step()?;
-            if holds(&now) {
-                return Ok(Some(now));
+        self.rig.ask(Request::Park)?;
+        for _ in 0..HOMEWARD_TICKS {
+            self.step()?;
+            if self.rig.session().state() != State::Parking {
+                return self.rest(REST_TICKS).map(|_| ());
             }
         }
-        Ok(None)
+        Err(Failure::failed("unfinished", otherwise))
     }
 
     /// Lets ticks pass.
@@ -203,8 +190,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
     /// The same, whatever is wrong with the rig.
     pub(super) fn tick(&mut self) -> Result<Telemetry, Failure> {
         self.task.check()?;
-        let _ = self.rig.send(Command::KeepAlive);
-        let now = self.rig.step().telemetry;
+        let now = self.rig.step()?.telemetry;
         self.history.push(&now);
         Ok(now)
     }

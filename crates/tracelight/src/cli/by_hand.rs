@@ -24,13 +24,6 @@ pub(crate) struct ByHandArgs {
     pub(crate) events: bool,
 }
 
-impl ByHandArgs {
-    /// Whether any of them is given.
-    pub(crate) const fn is_given(&self) -> bool {
-        self.real_time.is_some() || self.events || self.frame.is_some()
-    }
-}
-
 /// Frames of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum FrameName {

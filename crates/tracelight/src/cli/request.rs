@@ -137,8 +137,8 @@ impl TraceArgs {
             let message = "--head says where the head stands, and --distance too: leave one of them out";
             return Err(Failure::usage("usage", message));
         }
-        if self.eye.camera.is_some() && self.by_hand.is_given() {
-            let message = "--real-time, --frame and --events are not there yet for what a camera follows: leave them or --camera out";
+        if self.eye.camera.is_some() && self.by_hand.frame.is_some() {
+            let message = "--frame shows where a drawing will be, and what a camera sees is drawn where it is: leave --frame or --camera out";
             return Err(Failure::usage("usage", message));
         }
         let follows = self.follow.open_loop || !self.follow.sim_trouble.is_empty() || self.home;

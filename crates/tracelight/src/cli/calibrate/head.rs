@@ -10,6 +10,7 @@ use tracelight_files as files;
 use tracelight_rig::PanTilt;
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::head::{HeadFile, HeadScore, KnownHead, NewHead};
+use tracelight_session::Session;
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::bar::Bar;
@@ -69,11 +70,8 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     task.stage("wall", 1);
     let known = args.head.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
     let mut room = Furnished::new(&request, &driving.rig, driving.pose)?;
-    let mut rig = if args.home {
-        room.powered_up(&driving.rig, driving.pose)
-    } else {
-        room.watched(&driving.rig, driving.pose)
-    };
+    let put_up = if args.home { Furnished::powered_up } else { Furnished::watched };
+    let mut rig = Session::new(put_up(&room, &driving.rig, driving.pose));
     let wall = see_wall(well_exposed(&mut rig, stop)?, args.eye.known()?.as_ref())?;
     wall.remarks.iter().for_each(|remark| task.say(&format!("note: {remark}")));
     stop.check()?;
@@ -82,7 +80,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     let homed = if args.home {
         let images = known.as_ref().and_then(KnownHead::images);
         let homed = home_head(&mut rig, &camera, &driving, images, task)?;
-        room.homed(&mut rig, &homed);
+        room.homed(rig.rig_mut(), &homed);
         Some((homed, room.zero_error_m(known.is_some())))
     } else {
         None
@@ -91,7 +89,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         let text = format!("wall:     {}{}", wall.words(), homed_text(homed.as_ref()));
         return Ok(Answer::new(text, with_homed(json!({}), homed.as_ref()).to_string()));
     }
-    let found = find_head(&mut rig, &camera, &driving, &DotsRequest::first(&driving), task, &mut |_| {})?;
+    let found = find_head(&mut rig, &camera, &driving, &DotsRequest::first(&driving), task)?;
     stop.check()?;
     let file = HeadFile::of(&NewHead {
         date: &named::today(),

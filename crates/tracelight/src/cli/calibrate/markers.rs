@@ -14,6 +14,7 @@ use tracelight_pipeline::{DEFAULT_DISTANCE_M, Placing};
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::PageName;
 use tracelight_rigfile::camera::{CameraFile, Wall};
+use tracelight_session::Session;
 use tracelight_sim::RigConfig;
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop};
@@ -279,7 +280,8 @@ fn taken(args: &MarkersArgs, name: &str, known: Option<&LensBelief>, stop: &Stop
             let picture = picture.map(named::painted).transpose()?;
             let request =
                 RoomRequest { picture: picture.as_ref(), placing: &placing, eye, pages: true, seed };
-            well_exposed(&mut Furnished::new(&request, &rig, pose)?.watched(&rig, pose), stop)?
+            let room = Furnished::new(&request, &rig, pose)?.watched(&rig, pose);
+            well_exposed(&mut Session::new(room), stop)?
         }
     };
     Ok(View::of(name, &grey(&pixels)?))

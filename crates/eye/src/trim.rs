@@ -4,7 +4,8 @@
 //! thousand times a second knows nothing of a camera.
 
 use tracelight_aim::Correction;
-use tracelight_rig::{Command, Joint, PanTilt, Rig, Segment, Setpoint, TICK_F64_S};
+use tracelight_rig::{Joint, PanTilt, Segment, Setpoint, TICK_F64_S};
+use tracelight_session::Trim;
 use tracelight_trajectory::JointMotion;
 
 /// How far ahead of the plan's clock segments are sent, ticks: a host may be held up for so long.
@@ -16,54 +17,52 @@ const SCALE_S: f64 = 5e-3;
 const MOST_OFFSET_RAD: f64 = 0.02;
 const MOST_SCALE: f64 = 0.02;
 
-/// Sends segments, trimmed.
-pub struct TrimmedFeeder<'a> {
-    segments: &'a [Segment],
-    dark: bool,
-    finished: bool,
+/// Trims a plan's segments on their way.
+pub struct Trimmer {
+    /// What is to be trimmed from the next segment on, as slowly as that may change.
+    pub wanted: Correction,
     /// What is trimmed at the end of the last one that was sent.
     trimmed: Correction,
-    /// What was taken off each of those that were sent, rad per tickⁱ.
-    taken_off: Vec<PanTilt<[f64; 6]>>,
+    /// Each that was sent, as it was planned, and what was taken off, rad per tickⁱ.
+    sent: Vec<(Segment, PanTilt<[f64; 6]>)>,
 }
 
-impl<'a> TrimmedFeeder<'a> {
-    /// `dark` shuts every segment's gate: a dry run.
-    #[must_use]
-    pub const fn new(segments: &'a [Segment], dark: bool) -> Self {
-        let none = Correction { offset_rad: PanTilt::new(0.0, 0.0), scale: PanTilt::new(0.0, 0.0) };
-        Self { segments, dark, finished: false, trimmed: none, taken_off: Vec::new() }
+impl Trim for Trimmer {
+    fn ahead_ticks(&self) -> u32 {
+        AHEAD_TICKS
     }
 
-    /// Sends what is soon due at a tick of the plan, then the end of the job.
-    pub fn feed(&mut self, rig: &mut impl Rig, plan_tick: u32, wanted: &Correction) {
-        while let Some(segment) = self.segments.get(self.taken_off.len()) {
-            if segment.start_tick > plan_tick + AHEAD_TICKS {
-                return;
-            }
-            let next = nearer(&self.trimmed, wanted, f64::from(segment.ticks) * TICK_F64_S);
-            let off = PanTilt::from_fn(|j| between(segment, j, (&self.trimmed, &next)));
-            let coefficients = PanTilt::from_fn(|j| {
-                std::array::from_fn(|i| (f64::from(segment.coefficients[j][i]) - off[j][i]) as f32)
-            });
-            let sent = Segment { coefficients, gate: segment.gate && !self.dark, ..*segment };
-            if rig.send(Command::Append(sent)).is_err() {
-                return;
-            }
-            self.taken_off.push(off);
-            self.trimmed = next;
-        }
-        if !self.finished {
-            self.finished = rig.send(Command::Finish).is_ok();
-        }
+    fn trimmed(&mut self, segment: &Segment) -> Segment {
+        let next = nearer(&self.trimmed, &self.wanted, f64::from(segment.ticks) * TICK_F64_S);
+        let off = PanTilt::from_fn(|j| between(segment, j, (&self.trimmed, &next)));
+        let coefficients = PanTilt::from_fn(|j| {
+            std::array::from_fn(|i| (f64::from(segment.coefficients[j][i]) - off[j][i]) as f32)
+        });
+        self.sent.push((*segment, off));
+        self.trimmed = next;
+        Segment { coefficients, ..*segment }
+    }
+}
+
+impl Default for Trimmer {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Trimmer {
+    /// Begins with nothing trimmed.
+    #[must_use]
+    pub const fn new() -> Self {
+        let none = Correction { offset_rad: PanTilt::new(0.0, 0.0), scale: PanTilt::new(0.0, 0.0) };
+        Self { wanted: none, trimmed: none, sent: Vec::new() }
     }
 
     /// Where the joints were asked to be before it was trimmed, rad.
     #[must_use]
     pub fn untrimmed(&self, plan_tick: u32, setpoint: &PanTilt<Setpoint>) -> PanTilt<f64> {
-        let number = self.segments.partition_point(|segment| segment.end_tick() <= plan_tick);
-        let last = self.taken_off.len().saturating_sub(1);
-        let sent = self.segments.get(number.min(last)).zip(self.taken_off.get(number.min(last)));
+        let number = self.sent.partition_point(|(segment, _)| segment.end_tick() <= plan_tick);
+        let sent = self.sent.get(number.min(self.sent.len().saturating_sub(1)));
         let off = |j: Joint| {
             sent.map_or(0.0, |(segment, off)| {
                 let n = f64::from(plan_tick.saturating_sub(segment.start_tick).min(u32::from(segment.ticks)));
@@ -109,7 +108,8 @@ fn between(segment: &Segment, joint: Joint, (from, to): (&Correction, &Correctio
 mod tests {
     use super::*;
     use std::collections::VecDeque;
-    use tracelight_rig::Telemetry;
+    use tracelight_rig::{Command, Rig, Telemetry};
+    use tracelight_session::Feeder;
 
     /// Takes all it is sent.
     #[derive(Default)]
@@ -157,10 +157,11 @@ mod tests {
     #[test]
     fn without_a_trim_segments_are_sent_as_they_are_and_not_too_early() {
         let segments = segments();
-        let (mut feeder, mut wire) = (TrimmedFeeder::new(&segments, false), Wire::default());
-        feeder.feed(&mut wire, 0, &Correction::default());
+        let mut feeder = Feeder::new(&segments, false);
+        let (mut trimmer, mut wire) = (Trimmer::new(), Wire::default());
+        feeder.feed_trimmed(&mut wire, 0, &mut trimmer);
         assert_eq!(sent(&wire), segments[..6]);
-        (0..2000).for_each(|tick| feeder.feed(&mut wire, tick, &Correction::default()));
+        (0..2000).for_each(|tick| feeder.feed_trimmed(&mut wire, tick, &mut trimmer));
         assert_eq!(sent(&wire), segments);
         assert_eq!(wire.0.back(), Some(&Command::Finish));
         assert_eq!(wire.0.len(), segments.len() + 1);
@@ -169,9 +170,11 @@ mod tests {
     #[test]
     fn a_trim_comes_smoothly_and_is_known_afterwards() {
         let segments = segments();
-        let (mut feeder, mut wire) = (TrimmedFeeder::new(&segments, false), Wire::default());
+        let mut feeder = Feeder::new(&segments, false);
+        let (mut trimmer, mut wire) = (Trimmer::new(), Wire::default());
         let wanted = Correction { offset_rad: PanTilt::new(1e-3, -1.0), scale: PanTilt::new(4e-3, 0.0) };
-        (0..2000).for_each(|tick| feeder.feed(&mut wire, tick, &wanted));
+        trimmer.wanted = wanted;
+        (0..2000).for_each(|tick| feeder.feed_trimmed(&mut wire, tick, &mut trimmer));
         let sent = sent(&wire);
         for pair in sent.windows(2) {
             let (end, begin) = (pair[0].sample(50.0), pair[1].sample(0.0));
@@ -190,7 +193,7 @@ mod tests {
         assert!((off + 2e-3 * 2.0).abs() < 1e-4, "{off}");
         for tick in [0, 77, 1024, 1999] {
             let (k, n) = (tick as usize / 50, (tick % 50) as f32);
-            let asked = feeder.untrimmed(tick, &sent[k].sample(n));
+            let asked = trimmer.untrimmed(tick, &sent[k].sample(n));
             let own = segments[k].sample(n);
             assert!((asked.pan - f64::from(own.pan.position_rad)).abs() < 1e-6, "{tick}");
             assert!((asked.tilt - f64::from(own.tilt.position_rad)).abs() < 1e-6, "{tick}");
@@ -200,8 +203,8 @@ mod tests {
     #[test]
     fn a_dry_run_shuts_every_gate() {
         let segments = segments();
-        let (mut feeder, mut wire) = (TrimmedFeeder::new(&segments, true), Wire::default());
-        feeder.feed(&mut wire, 0, &Correction::default());
+        let (mut feeder, mut wire) = (Feeder::new(&segments, true), Wire::default());
+        feeder.feed_trimmed(&mut wire, 0, &mut Trimmer::new());
         assert!(sent(&wire).iter().all(|segment| !segment.gate));
     }
 }
