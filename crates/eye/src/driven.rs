@@ -6,6 +6,9 @@ use tracelight_task::Failure;
 
 use crate::shot::Shot;
 
+/// How long a head that is parked is given to come to rest, ticks.
+const MOST_SETTLING_TICKS: u32 = 1000;
+
 /// Something that takes images of the wall, by the clock of the rig's ticks.
 pub trait Eye {
     /// How long each row is to be exposed from the next image on, s.
@@ -31,6 +34,20 @@ pub trait Driven: Eye {
     /// # Errors
     /// The rig is gone, or whoever watches its ticks wants no more of them.
     fn step(&mut self) -> Result<Tick, Failure>;
+
+    /// Lets ticks pass until the joints rest, which begin a job from there; after a second it begins or is refused as it is.
+    ///
+    /// # Errors
+    /// As of [`step`](Self::step).
+    fn settle(&mut self) -> Result<(), Failure> {
+        for _ in 0..MOST_SETTLING_TICKS {
+            if self.session().rests() {
+                break;
+            }
+            self.step()?;
+        }
+        Ok(())
+    }
 
     /// Asks its session.
     ///

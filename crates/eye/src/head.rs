@@ -208,6 +208,7 @@ pub fn see_dots<D: Driven>(
     watch.begin(rig.take(watch.exposure_s)?);
     let mut history = History::new(&driving.rig.model.relay);
     let mut sightings = Vec::new();
+    rig.settle()?;
     check_homed(rig.session().told())?;
     rig.ask(Request::Arm)?;
     rig.ask(Request::Trace(job_of(&plan, false)))?;

@@ -8,16 +8,23 @@ use tracelight_task::Failure;
 pub struct PowerWatch {
     /// How many faults there had been when it last said that it was homed.
     homed_with: Option<u32>,
+    /// It was told to forget where it points, and was not homed since.
+    forgot: bool,
 }
 
 impl PowerWatch {
+    /// It is told to forget where it points: that it is not homed afterwards means nothing.
+    pub const fn forget(&mut self) {
+        self.forgot = true;
+    }
+
     /// Whether it lost power, or was never homed, by what it tells in one more tick. Who lost counts has had one more fault since.
     pub fn is_lost(&mut self, now: &Telemetry) -> bool {
         if now.homed {
-            self.homed_with = Some(now.fault_number);
+            *self = Self { homed_with: Some(now.fault_number), forgot: false };
             return false;
         }
-        self.homed_with.is_none_or(|number| now.fault_number <= number)
+        !self.forgot && self.homed_with.is_none_or(|number| now.fault_number <= number)
     }
 }
 
@@ -53,5 +60,12 @@ mod tests {
         assert!(!watch.is_lost(&homed(2)) && !watch.is_lost(&unhomed(3)) && !watch.is_lost(&unhomed(4)));
         assert!(watch.is_lost(&unhomed(0)), "power that went while it was homed again");
         assert!(!watch.is_lost(&homed(5)) && watch.is_lost(&unhomed(0)));
+        assert!(!watch.is_lost(&homed(5)));
+        watch.forget();
+        assert!(!watch.is_lost(&unhomed(5)), "as it was told");
+        assert!(
+            !watch.is_lost(&homed(5)) && watch.is_lost(&unhomed(5)),
+            "and homed again it is another time"
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use tracelight_eye::power::lost_power;
 use tracelight_eye::{Driven, Eye, Shot};
-use tracelight_session::Session;
+use tracelight_session::{Request, Session};
 use tracelight_sim::{Room, Tick, tick};
 use tracelight_task::Failure;
 
@@ -32,6 +32,13 @@ impl Driven for Aside<'_, '_> {
         }
         watched.listen();
         Ok(tick)
+    }
+
+    fn ask(&mut self, request: Request) -> Result<(), Failure> {
+        if request == Request::Unhome {
+            self.0.power.forget();
+        }
+        self.0.session.request(request).map_err(|why| Failure::failed("session", why.to_string()))
     }
 }
 

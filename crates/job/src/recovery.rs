@@ -7,7 +7,7 @@ use tracelight_eye::head::{DotsRequest, find_head};
 use tracelight_eye::homing::home_again;
 use tracelight_eye::power::lost_power;
 use tracelight_eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
-use tracelight_eye::{Eye, Looks, PATIENCE_TICKS, Shot};
+use tracelight_eye::{Driven as _, Eye, Looks, PATIENCE_TICKS, Shot};
 use tracelight_pipeline::refused;
 use tracelight_rig::{PanTilt, TICK_F64_S};
 use tracelight_session::{Refused, Request, State, When};
@@ -247,7 +247,7 @@ impl Watched<'_> {
                 return Err(Failure::fault(fault));
             }
             if self.session.state() != State::Parking {
-                return Ok(());
+                return Aside(self).settle();
             }
             self.looking.stop.check()?;
         }

@@ -292,9 +292,7 @@ impl Watched<'_> {
         self.go(plan)?;
         let mut most = plan.points.len() + self.session.rig().patience_ticks();
         let mut aftermath = AFTERMATH_TICKS;
-        // what is armed anew on its way begins with a hold
-        let mut was_held = true;
-        let mut lit = false;
+        let (mut traced, mut lit) = (false, false);
         while most > 0 && aftermath > 0 {
             let wanted = if self.job.seen.open { Correction::default() } else { self.follower.correction() };
             self.trimmer.iter_mut().for_each(|trimmer| trimmer.wanted = wanted);
@@ -315,20 +313,19 @@ impl Watched<'_> {
                 _ => {}
             }
             if self.held {
-                was_held = true;
                 aftermath -= u32::from(!self.is_attended());
             } else {
                 most -= 1;
             }
             lit |= tick.telemetry.actuation.lights();
-            let holds = !self.held && matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
+            // what is armed anew on its way begins with a hold
+            let holds = traced && matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
             // before the first light it may only wait until its encoders were seen to follow its motors
             let waits = !lit && tick.telemetry.darkness.contains(Darkness::Untested);
             // a gyroscope tells by itself whether the head stands where it stood
             let judged = tick.telemetry.darkness.contains(Darkness::Jolted);
-            let held = (holds && !was_held && !waits && !judged)
-                .then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
-            was_held = holds || self.held;
+            let held = (holds && !waits && !judged).then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
+            traced = tick.telemetry.phase == Phase::Tracing;
             let suspicion = suspicion.or(held).filter(|_| !self.job.seen.open && state != State::Fault);
             if let Some(suspicion) = suspicion {
                 return Ok(Ended::Suspect(suspicion));

@@ -6,7 +6,7 @@
     reason = "a test that cannot go on may panic, and shows figures"
 )]
 
-use std::collections::HashMap;
+mod ink;
 
 use tracelight_aim::HeadPose;
 use tracelight_job::{Keep, Prepared, Request, RunRequest, prepare};
@@ -17,10 +17,10 @@ use tracelight_stroke::Point;
 use tracelight_task::{Failure, NoProgress, Stop, Task};
 use tracelight_trajectory::Plan;
 
-/// Places on the lines that are looked at, m apart.
-const STEP_M: f64 = 5e-5;
-/// Side of the squares by which places are found, m; further than that light is not from its line.
-const CELL_M: f64 = 2e-3;
+use crate::ink::{Lines, longest_mm};
+
+/// Light this near to a line is on it, m.
+const ON_IT_M: f64 = 3e-4;
 
 /// A circle, a square and an open line, which do not cross: whatever is lit twice is doubled.
 const DRAWING: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="400mm" height="300mm" viewBox="0 0 400 300" fill="none" stroke="black">
@@ -56,65 +56,6 @@ impl Keep for Killed {
     }
 }
 
-/// Places along the lines of a plan, found by where they are.
-struct Lines {
-    places: Vec<Point>,
-    cells: HashMap<(i64, i64), Vec<usize>>,
-}
-
-fn cell(p: Point) -> (i64, i64) {
-    ((p.x / CELL_M).floor() as i64, (p.y / CELL_M).floor() as i64)
-}
-
-impl Lines {
-    fn of(plan: &Plan) -> Self {
-        let mut places: Vec<Point> = Vec::new();
-        for pair in plan.points.windows(2).filter(|pair| pair.iter().all(|point| point.lit)) {
-            let (from, to) = (pair[0].spot, pair[1].spot);
-            let steps = (from.distance(to) / STEP_M).ceil();
-            for place in (0..steps as usize).map(|k| from.lerp(to, k as f64 / steps)) {
-                // where it is slow, ticks are nearer to each other
-                if places.last().is_none_or(|last| last.distance(place) >= 0.9 * STEP_M) {
-                    places.push(place);
-                }
-            }
-        }
-        let mut cells: HashMap<_, Vec<usize>> = HashMap::new();
-        for (number, place) in places.iter().enumerate() {
-            cells.entry(cell(*place)).or_default().push(number);
-        }
-        Self { places, cells }
-    }
-
-    /// Which places light passed.
-    fn passed(&self, lit: &[[Point; 2]]) -> Vec<bool> {
-        let mut passed = vec![false; self.places.len()];
-        for &[from, to] in lit {
-            let way = to - from;
-            let length_m = way.hypot();
-            let (x, y) = cell(from.midpoint(to));
-            let near = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (x + dx, y + dy)));
-            for &number in near.filter_map(|at| self.cells.get(&at)).flatten() {
-                let off = self.places[number] - from;
-                let along_m = off.dot(way) / length_m.max(1e-9);
-                let is_beside = (-STEP_M..=length_m + STEP_M).contains(&along_m);
-                passed[number] |= is_beside && (off - way * (along_m / length_m.max(1e-9))).hypot() < 3e-4;
-            }
-        }
-        passed
-    }
-}
-
-/// Longest row of places of that kind, mm.
-fn longest_mm(places: impl Iterator<Item = bool>) -> f64 {
-    let (mut row, mut longest) = (0_u32, 0);
-    for is in places {
-        row = if is { row + 1 } else { 0 };
-        longest = longest.max(row);
-    }
-    f64::from(longest) * STEP_M * 1e3
-}
-
 fn driving() -> Driving {
     let rig = RigConfig::report();
     let request = request_of(&rig);
@@ -147,7 +88,7 @@ fn worst_of(moments: impl IntoIterator<Item = u64>, times: usize) -> (f64, f64) 
             let most = job.schedule.plan.points.len() as u64;
             let mut keep = Killed::at(dice.rand_range(0..most) as u32);
             assert_eq!(job.run(&mut keep, task).err().unwrap().code, "killed");
-            runs.push(lines.passed(&keep.lit));
+            runs.push(lines.passed(&keep.lit, ON_IT_M));
             match job.after(keep.plan_tick).unwrap() {
                 Some(rest) => job = rest,
                 // it was all but done
@@ -160,9 +101,9 @@ fn worst_of(moments: impl IntoIterator<Item = u64>, times: usize) -> (f64, f64) 
         let mut keep = Killed::at(u32::MAX);
         let ran = job.run(&mut keep, task).unwrap();
         assert!(ran.failure.is_none(), "{:?}", ran.failure);
-        runs.push(lines.passed(&keep.lit));
+        runs.push(lines.passed(&keep.lit, ON_IT_M));
         let drawn = |place: usize| runs.iter().filter(|run| run[place]).count();
-        let all = 0..lines.places.len();
+        let all = 0..lines.len();
         missing_mm = missing_mm.max(longest_mm(all.clone().map(|place| drawn(place) == 0)));
         doubled_mm = doubled_mm.max(longest_mm(all.map(|place| drawn(place) > 1)));
     }

@@ -434,7 +434,8 @@ impl<R: Rig> Session<R> {
         self.told.tick.wrapping_sub(self.asked) > ATTENDED_TICKS
     }
 
-    pub(crate) fn rests(&self) -> bool {
+    /// Whether the joints rest, as far as the last telemetry tells.
+    pub fn rests(&self) -> bool {
         self.is_slower_than(REST_RAD_S)
     }
 
