@@ -13,15 +13,13 @@ const GO_ON: &str = "arm and resume";
 impl Watched<'_> {
     /// Whether anybody may still ask for anything.
     pub(crate) fn is_attended(&self) -> bool {
-        self.hands.as_ref().is_some_and(|hands| hands.is_there())
+        self.hands.is_there()
     }
 
     /// The camera begins to look into what is off, or is done with that.
     pub(crate) fn look(&mut self, on: bool) {
         self.looking = Looking { on, ..Looking::default() };
-        if let Some(hands) = &mut self.hands {
-            hands.looks(on);
-        }
+        self.hands.looks(on);
     }
 
     /// Tells whoever stands there what this tick was, and does what they ask.
@@ -35,16 +33,14 @@ impl Watched<'_> {
             if !self.looking.on {
                 self.diary.write(&event, &now);
             }
-            if let Some(hands) = &mut self.hands {
-                hands.event(&event);
-            }
+            self.hands.event(&event);
         }
-        let asked = self.hands.as_mut().and_then(|hands| hands.tick(&now));
+        let asked = self.hands.tick(&now);
         // strokes come one after the other by themselves
         let Some(Ask::Request(request)) = asked.filter(|_| !self.is_ended()) else { return };
         let answer = if self.looking.on { self.ask_looking(request) } else { self.session.request(request) };
-        if let (Err(why), Some(hands)) = (answer, &mut self.hands) {
-            hands.refused(&why);
+        if let Err(why) = answer {
+            self.hands.refused(&why);
         }
     }
 

@@ -3,12 +3,14 @@
 use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
 use tracelight_rig::Fault;
 use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
-use tracelight_sim::{AFTERMATH_TICKS, SimulatedRig, Tick, tick};
+use tracelight_sim::{AFTERMATH_TICKS, Simulated as _, SimulatedRig, Tick, tick};
 use tracelight_task::{Failure, Task};
 
 use crate::hands::{Ask, Hands};
 use crate::keep::Keep;
-use crate::lap::GOODBYE_TICKS;
+
+/// Ticks the head is watched after the user stopped it: longer than any relay of a rig file takes to open.
+const GOODBYE_TICKS: u32 = 80;
 
 /// What a session does with somebody at the wall, and what is kept of it.
 pub(crate) trait Course {
@@ -60,7 +62,9 @@ pub(crate) fn drive(
     course.keep(keep, first, &wall.snapshot(), 0)?;
     begin(wall, job).map_err(|why| Failure::failed("session", why.to_string()))?;
     let mut power = PowerWatch::default();
-    let (mut goodbye, mut aftermath) = (GOODBYE_TICKS, AFTERMATH_TICKS);
+    power.is_lost(&first.telemetry);
+    let (mut goodbye, mut aftermath, mut on_ticks) = (GOODBYE_TICKS, AFTERMATH_TICKS, 0);
+    let patience_ticks = wall.rig().patience_ticks();
     while !course.is_over() && wall.state() != State::Done && goodbye > 0 && aftermath > 0 {
         // the tick in which a lap ends belongs to that one
         let laps = wall.snapshot().laps;
@@ -80,6 +84,11 @@ pub(crate) fn drive(
         }
         let ended = matches!(now.state, State::Fault | State::Stopped | State::Ready);
         aftermath -= u32::from(ended && !hands.is_there());
+        // a head that leaves its stroke again and again
+        on_ticks += usize::from(now.state.is_on() && !now.state.repeats());
+        if on_ticks > now.plan_ticks as usize + patience_ticks && !hands.is_there() {
+            break;
+        }
         if task.stop.is_wanted() {
             let _ = wall.request(Request::Stop);
             goodbye -= 1;

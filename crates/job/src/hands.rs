@@ -25,6 +25,23 @@ pub enum Step {
     To(u32),
 }
 
+/// Nobody: the job runs by itself, as fast as its rig does.
+pub(crate) struct Nobody;
+
+impl Hands for Nobody {
+    fn tick(&mut self, _: &Snapshot) -> Option<Ask> {
+        None
+    }
+
+    fn event(&mut self, _: &Event) {}
+
+    fn refused(&mut self, _: &Refused) {}
+
+    fn is_there(&self) -> bool {
+        false
+    }
+}
+
 /// Somebody at the wall while a lap runs.
 pub trait Hands {
     /// Told after each tick, and may wait, so that a simulated rig keeps real time. Returns what is asked, if anything is.

@@ -1,102 +1,96 @@
-//! One lap that nobody looks at, and what laps tell of a rig.
+//! A lap that no camera follows. Somebody at the wall may pause, stop, hurry or slow it, and let it go on.
 
-use std::ops::ControlFlow;
-
-use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
-use tracelight_lab::{LAPS_WORTH, identify};
-use tracelight_rig::{Command, Joint, Rig};
-use tracelight_sim::{RigConfig, Run, SimulatedRig};
+use tracelight_session::{Event, Refused, Session, Snapshot, State};
+use tracelight_sim::{Run, SimulatedRig, Tick, job_of};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
 
-use crate::keep::Keep;
+use crate::course::Course;
+use crate::diary::Diary;
+use crate::frame::drive_framed;
+use crate::hands::{Ask, Hands};
+use crate::keep::{Keep, REST_TICKS};
+use crate::looped::Looped;
 
-/// What the laps so far tell of a rig.
-pub(crate) struct Learned {
-    pub(crate) rig: RigConfig,
-    /// Some of it was better than what was believed.
-    pub(crate) taken: bool,
+/// A lap, and what became of it.
+pub(crate) struct RanLap {
+    pub(crate) run: Run,
+    /// Why it ended if its rig lost power.
+    pub(crate) failure: Option<Failure>,
+    /// Pauses and other speeds.
     pub(crate) notes: Vec<String>,
 }
 
-pub(crate) fn learn(rig: &RigConfig, laps: &[Run]) -> Learned {
-    // a lap in which the head was found again has a gap
-    let is_whole =
-        |lap: &&Run| lap.ticks.windows(2).all(|t| t[1].telemetry.tick == t[0].telemetry.tick.wrapping_add(1));
-    let last = laps.iter().rev().filter(is_whole).take(LAPS_WORTH);
-    let mut last: Vec<_> = last.map(Run::telemetry).collect();
-    last.reverse();
-    let found = match identify(rig, &last) {
-        Ok(found) => found,
-        Err(error) => {
-            let notes = vec![format!("nothing identified between laps: {error}")];
-            return Learned { rig: rig.clone(), taken: false, notes };
-        }
-    };
-    let notes = Joint::BOTH.map(|j| {
-        let fit = &found.joints[j];
-        let verdict = if fit.taken { "" } else { ", no better: what was believed is kept" };
-        format!(
-            "{j} identified from the laps before: edges off the model by {:.3} counts rms, before {:.3}{verdict}",
-            fit.after_counts, fit.before_counts
-        )
-    });
-    let taken = Joint::BOTH.iter().any(|&j| found.joints[j].taken);
-    Learned { rig: found.rig, taken, notes: notes.to_vec() }
-}
-
-/// Ticks the head is watched after the user stopped it: longer than any relay of a rig file takes to open.
-pub(crate) const GOODBYE_TICKS: u32 = 80;
-
-/// One lap, every tick kept as it happens, and why it ended if its rig lost power. Whatever ends it darkens first; Ctrl-C has the head watched for a moment.
+/// One lap, after the frame where there is one, every tick kept as it happens. Whatever ends it darkens first.
 pub(crate) fn run_lap(
     rig: &mut SimulatedRig,
-    plan: &Plan,
+    (plan, frame): (&Plan, Option<&Looped>),
     dry: bool,
-    keep: &mut dyn Keep,
+    (keep, hands): (&mut dyn Keep, &mut dyn Hands),
     task: Task<'_>,
-) -> Result<(Run, Option<Failure>), Failure> {
-    let mut failed: Option<Failure> = None;
-    let (mut goodbye, mut begun, mut unpowered) = (0, false, None);
-    let mut power = PowerWatch::default();
-    let mut run = tracelight_sim::run(rig, plan, dry, |rig, tick| {
-        if power.is_lost(&tick.telemetry) {
-            match begun {
-                true => unpowered = Some(lost_power()),
-                false => failed = check_homed(&tick.telemetry).err(),
-            }
-            return ControlFlow::Break(());
+) -> Result<RanLap, Failure> {
+    let mut lap = Lap { plan, task, run: Run::default(), rests: 0, diary: Diary::default() };
+    let ended = drive_framed(rig, (job_of(plan, dry), &mut lap), frame, (keep, hands), task)?;
+    Ok(RanLap {
+        run: lap.run,
+        failure: ended.failure.or(ended.fault.map(Failure::fault)),
+        notes: lap.diary.notes,
+    })
+}
+
+struct Lap<'a> {
+    plan: &'a Plan,
+    task: Task<'a>,
+    run: Run,
+    /// Ticks since it rests.
+    rests: u32,
+    diary: Diary,
+}
+
+impl Course for Lap<'_> {
+    fn keep(&mut self, keep: &mut dyn Keep, tick: Tick, now: &Snapshot, _: u32) -> Result<(), Failure> {
+        keep.tick(self.plan, &tick)?;
+        let is_resting =
+            matches!(now.state, State::Paused | State::Stopped | State::Armed | State::Fault) && !tick.light;
+        self.rests = if is_resting { self.rests.saturating_add(1) } else { 0 };
+        if self.rests <= REST_TICKS {
+            self.run.ticks.push(tick);
         }
-        begun = true;
-        if let Err(error) = keep.tick(plan, tick) {
-            failed = Some(error);
-            return ControlFlow::Break(());
+        self.diary.watch(now);
+        if tick.telemetry.tick.is_multiple_of(256) {
+            self.task.at(u64::from(tick.telemetry.plan_tick));
         }
-        let number = tick.telemetry.tick;
-        if number.is_multiple_of(256) {
-            task.at(u64::from(number));
-        }
-        if !task.stop.is_wanted() {
-            return ControlFlow::Continue(());
-        }
-        // a simulated rig takes every command but a segment for a full queue
-        let _ = rig.send(Command::Disarm);
-        goodbye += 1;
-        if goodbye > GOODBYE_TICKS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    if unpowered.is_some() {
-        // that tick's clock is another
-        run.ticks.pop();
+        Ok(())
     }
-    failed.map_or(Ok((run, unpowered)), Err)
+
+    fn see(&mut self, event: &Event, now: &Snapshot) -> bool {
+        self.diary.write(event, now);
+        true
+    }
+
+    fn ask(
+        &mut self,
+        ask: Ask,
+        wall: &mut Session<&mut SimulatedRig>,
+        _: &mut dyn Hands,
+        _: Task<'_>,
+    ) -> Result<(), Refused> {
+        match ask {
+            Ask::Request(request) => wall.request(request),
+            // strokes come one after the other by themselves
+            Ask::Step(_) => Ok(()),
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hands::Nobody;
     use tracelight_aim::HeadPose;
     use tracelight_rig::Joint;
-    use tracelight_sim::{Simulated, Tick, Trouble};
+    use tracelight_sim::{RigConfig, Simulated, Tick, Trouble};
+
     use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
     use tracelight_task::{NoProgress, Stop};
     use tracelight_trajectory::plan;
@@ -148,11 +142,11 @@ mod tests {
                 let task = Task { progress: &NoProgress, stop: &stop };
                 let mut rig = SimulatedRig::new(&config, POSE, seed as u64);
                 let mut keep = Until { tick, stop: stopped.then_some(&stop), gates: Vec::new() };
-                let lap = run_lap(&mut rig, &plan, false, &mut keep, task);
+                let lap = run_lap(&mut rig, (&plan, None), false, (&mut keep, &mut Nobody), task);
                 assert!(keep.gates[tick as usize], "{tick}: nothing to see");
                 assert!(keep.gates[tick as usize + 1..].iter().all(|gate| !gate), "{tick}: open after it");
                 match lap {
-                    Ok((run, why)) => assert!(stopped && why.is_none() && !run.is_done()),
+                    Ok(lap) => assert!(stopped && lap.failure.is_none() && !lap.run.is_done()),
                     Err(why) => {
                         assert!(!stopped && why.code == "log");
                         assert_eq!(rig.told().tick, tick + 1, "a tick more, and its gate is shut");
@@ -181,9 +175,10 @@ mod tests {
         // its first edges tell of a disc that stands still
         rig.suffer(Trouble::EncoderCut(Joint::Pan));
         let mut keep = Jumps(0);
-        let (run, why) = run_lap(&mut rig, &plan, false, &mut keep, task).unwrap();
+        let lap = run_lap(&mut rig, (&plan, None), false, (&mut keep, &mut Nobody), task).unwrap();
+        let (run, why) = (lap.run, lap.failure);
         assert!(
-            why.is_none() && run.fault().is_some_and(tracelight_rig::Fault::loses_counts),
+            why.is_some_and(|why| why.code != "unhomed") && run.fault().is_some_and(tracelight_rig::Fault::loses_counts),
             "{:?}",
             run.fault()
         );

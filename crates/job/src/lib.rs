@@ -15,13 +15,13 @@
 
 mod aside;
 mod attended;
-mod by_hand;
 mod course;
 mod diary;
 mod frame;
 mod hands;
 mod keep;
 mod lap;
+mod learned;
 mod looped;
 mod points;
 mod prepared;

@@ -13,11 +13,11 @@ use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::Plan;
 
-use crate::by_hand::run_lap_by_hand;
 use crate::frame::frame_of;
-use crate::hands::Hands;
+use crate::hands::{Hands, Nobody};
 use crate::keep::Keep;
-use crate::lap::{Learned, learn, run_lap};
+use crate::lap::run_lap;
+use crate::learned::{Learned, learn};
 use crate::looped::{Item, Looped};
 use crate::points::PointDone;
 use crate::remainder;
@@ -203,7 +203,7 @@ impl Prepared {
     /// # Errors
     /// Where a tick cannot be kept, or the head was never homed. What ends a lap early is no error: see [`Ran::failure`].
     pub fn run(&self, keep: &mut dyn Keep, task: Task<'_>) -> Result<Ran, Failure> {
-        self.run_with(keep, None, task)
+        self.run_by_hand(keep, &mut Nobody, task)
     }
 
     /// Runs the laps with somebody at the wall, who may pause and stop each of them, and let it go on.
@@ -216,7 +216,32 @@ impl Prepared {
         hands: &mut dyn Hands,
         task: Task<'_>,
     ) -> Result<Ran, Failure> {
-        self.run_with(keep, Some(hands), task)
+        let (laps, run_ms) = task.timed(|| self.run_laps(keep, hands, task));
+        let Laps { earlier, last, learned, watched, failure, simulated } = laps?;
+        learned.notes.iter().for_each(|note| task.say(&format!("note: {note}")));
+        let follow = watched.as_ref().map(|watched| watched.figures.clone());
+        let eye = self.seen.as_ref().map(|seen| seen.after(&last, follow));
+        let words = eye.iter().flat_map(EyeFigures::words);
+        let notes = self.notes.iter().chain(&learned.notes).cloned().chain(words).collect();
+        let failure = failure.or_else(|| ending(&last, task.stop));
+        let identified = learned.taken.then_some(learned.rig);
+        let (plan, seen) = watched.map(|watched| (watched.plan, watched.seen)).unzip();
+        let finished = last.is_done();
+        let points = Vec::new();
+        Ok(Ran {
+            earlier,
+            last,
+            plan,
+            identified,
+            eye,
+            seen,
+            notes,
+            failure,
+            points,
+            finished,
+            simulated,
+            run_ms,
+        })
     }
 
     /// Makes it a job that is gone through one stroke, or point, at a time; `pace_m_s` is the speed of the spot, where it is to be another one. What is looked
@@ -289,46 +314,7 @@ impl Prepared {
         Ok((self, ran))
     }
 
-    fn run_with(
-        &self,
-        keep: &mut dyn Keep,
-        hands: Option<&mut dyn Hands>,
-        task: Task<'_>,
-    ) -> Result<Ran, Failure> {
-        let (laps, run_ms) = task.timed(|| self.run_laps(keep, hands, task));
-        let Laps { earlier, last, learned, watched, failure, simulated } = laps?;
-        learned.notes.iter().for_each(|note| task.say(&format!("note: {note}")));
-        let follow = watched.as_ref().map(|watched| watched.figures.clone());
-        let eye = self.seen.as_ref().map(|seen| seen.after(&last, follow));
-        let words = eye.iter().flat_map(EyeFigures::words);
-        let notes = self.notes.iter().chain(&learned.notes).cloned().chain(words).collect();
-        let failure = failure.or_else(|| ending(&last, task.stop));
-        let identified = learned.taken.then_some(learned.rig);
-        let (plan, seen) = watched.map(|watched| (watched.plan, watched.seen)).unzip();
-        let finished = last.is_done();
-        let points = Vec::new();
-        Ok(Ran {
-            earlier,
-            last,
-            plan,
-            identified,
-            eye,
-            seen,
-            notes,
-            failure,
-            points,
-            finished,
-            simulated,
-            run_ms,
-        })
-    }
-
-    fn run_laps(
-        &self,
-        keep: &mut dyn Keep,
-        mut hands: Option<&mut dyn Hands>,
-        task: Task<'_>,
-    ) -> Result<Laps, Failure> {
+    fn run_laps(&self, keep: &mut dyn Keep, hands: &mut dyn Hands, task: Task<'_>) -> Result<Laps, Failure> {
         let RunRequest { laps: wanted, seed, dry, powered_up } = self.how;
         let plan = &self.schedule.plan;
         let mut laps: Vec<Run> = Vec::new();
@@ -348,24 +334,17 @@ impl Prepared {
             let Some(looks) = self.watched() else {
                 let put_up = if powered_up { left } else { SimulatedRig::new };
                 let mut rig = put_up(&learned.rig, self.driving.pose, seed);
-                let (lap, why) = match &mut hands {
-                    Some(hands) => {
-                        // of the first lap
-                        let frame = self.placed.frame.as_ref().filter(|_| laps.is_empty());
-                        let frame = frame_of(frame, &self.driving, dry)?;
-                        let drawn = (plan, frame.as_ref());
-                        let done = run_lap_by_hand(&mut rig, drawn, dry, (keep, &mut **hands), task)?;
-                        learned.notes.extend(done.notes);
-                        (done.run, done.failure)
-                    }
-                    None => run_lap(&mut rig, plan, dry, keep, task)?,
-                };
+                // of the first lap
+                let frame = self.placed.frame.as_ref().filter(|_| laps.is_empty());
+                let frame = frame_of(frame, &self.driving, dry)?;
+                let drawn = (plan, frame.as_ref());
+                let done = run_lap(&mut rig, drawn, dry, (keep, hands), task)?;
+                learned.notes.extend(done.notes);
                 learned.notes.extend(lost_note(&learned.rig, self.driving.pose.distance_m, rig.lost_steps()));
-                laps.push(lap);
-                failure = why;
+                laps.push(done.run);
+                failure = done.failure;
                 continue;
             };
-            let hands = lent(&mut hands);
             let mut done = self.watched_lap(looks, &learned.rig, (keep, hands), task)?;
             learned.notes.append(&mut done.notes);
             laps.push(std::mem::take(&mut done.run));
@@ -382,7 +361,7 @@ impl Prepared {
         &self,
         (seen, room): (&Seen, &Furnished),
         believed: &RigConfig,
-        (keep, mut hands): (&mut dyn Keep, Option<&mut dyn Hands>),
+        (keep, hands): (&mut dyn Keep, &mut dyn Hands),
         task: Task<'_>,
     ) -> Result<WatchedRun, Failure> {
         let mut driving = self.driving.clone();
@@ -394,15 +373,7 @@ impl Prepared {
             seen,
             dry: self.how.dry,
         };
-        run_watched(&job, room.watched(believed, driving.pose), (keep, lent(&mut hands)), task)
-    }
-}
-
-/// Whoever stands at the wall, for a lap.
-fn lent<'a>(hands: &'a mut Option<&mut dyn Hands>) -> Option<&'a mut dyn Hands> {
-    match hands {
-        Some(hands) => Some(&mut **hands),
-        None => None,
+        run_watched(&job, room.watched(believed, driving.pose), (keep, hands), task)
     }
 }
 

@@ -92,7 +92,7 @@ pub(crate) struct Watched<'a> {
     /// Number of the first stroke of that plan.
     first: u32,
     /// Who stands at the wall.
-    pub(crate) hands: Option<&'a mut dyn Hands>,
+    pub(crate) hands: &'a mut dyn Hands,
     pub(crate) diary: Diary,
     pub(crate) looking: Looking,
     /// Somebody has paused or stopped it, and has not let it go on.
@@ -125,7 +125,7 @@ pub(crate) struct Watched<'a> {
 pub(crate) fn run_watched<'a>(
     job: &'a WatchedJob<'a>,
     room: Room,
-    (keep, hands): (&'a mut dyn Keep, Option<&'a mut dyn Hands>),
+    (keep, hands): (&'a mut dyn Keep, &'a mut dyn Hands),
     task: Task<'a>,
 ) -> Result<WatchedRun, Failure> {
     let painted = Painted::new(&job.seen.image, job.seen.followed.camera);
