@@ -20,14 +20,20 @@ pub(crate) struct Head {
     rate_rad_s: PanTilt<f32>,
     edge_age: PanTilt<Option<f32>>,
     gate: bool,
+    lost: i32,
     pub(crate) push_nm: PanTilt<f32>,
 }
 
 impl Head {
     pub(crate) fn sensed(&self) -> Sensed {
         let read =
-            |j: Joint| Measurement { count: count(self.angle_rad[j]), edge_age_ticks: self.edge_age[j] };
+            |j: Joint| Measurement { count: count(self.angle_rad[j]) - self.lost, edge_age_ticks: self.edge_age[j] };
         Sensed { encoders: PanTilt::from_fn(read), ..Sensed::default() }
+    }
+
+    /// Both encoders lose a count.
+    pub(crate) const fn lose_counts(&mut self) {
+        self.lost += 1;
     }
 
     pub(crate) fn exchange(&mut self, actuation: &Actuation) {

@@ -2,7 +2,7 @@
 //!
 //! The law that is simulated is the law that is flashed only if both compute the same bits. [`run`] runs the controller
 //! of the preset `report` on a head made of a few lines of `f32`, through strokes, reversals, a push and a fault, and
-//! folds every tick's telemetry into one number. `bin/host` prints it here, `bin/board` on an emulated Cortex-M33.
+//! folds every tick's telemetry into one number. `bin/host` prints it here, `bin/board` on an emulated Cortex-M33, with the instructions that a tick takes.
 
 #![no_std]
 
@@ -20,6 +20,9 @@ use tracelight_rig::{Command, Fault, PanTilt, Phase, Telemetry};
 /// Ticks that are hashed.
 pub const TICKS: u32 = 100_000;
 
+/// How often both encoders lose a count of a dear run, ticks.
+const LOSES_EVERY: u32 = 230;
+
 /// What became of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
@@ -33,28 +36,62 @@ pub struct Outcome {
     pub held_ticks: u32,
 }
 
-/// Runs so many ticks.
+/// What a run asks of the controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Load {
+    /// Strokes as they come.
+    Usual,
+    /// All that is dear at once: fast moves whose edges come in every tick, and counts that both encoders lose in the same tick, so that either observer has two
+    /// beliefs in a contest.
+    Dearest,
+}
+
+/// Told around what a board computes.
+pub trait Meter {
+    /// Something begins.
+    fn begin(&mut self) {}
+    /// A tick is over.
+    fn tick(&mut self) {}
+    /// A segment was taken.
+    fn append(&mut self) {}
+}
+
+impl Meter for () {}
+
+/// Runs so many ticks as they come.
 pub fn run(ticks: u32) -> Outcome {
+    run_metered(ticks, Load::Usual, &mut ())
+}
+
+/// Runs so many ticks, metered.
+pub fn run_metered(ticks: u32, load: Load, meter: &mut impl Meter) -> Outcome {
+    let is_dear = load == Load::Dearest;
     let controller = Controller::new(report());
     let mut head = Head::default();
+    let rearm_ticks = if is_dear { 1_000 } else { 10_000 };
     let mut sensed = head.sensed();
     let mut state = controller.start_homed(&sensed);
-    let mut strokes = Strokes::default();
+    let mut strokes = if is_dear { Strokes::far() } else { Strokes::default() };
     let mut fnv = Fnv::default();
     let (mut lit_ticks, mut held_ticks, mut fault, mut acknowledges) = (0, 0, None, 0);
     for tick in 0..ticks {
         tell(&controller, &mut state, Command::KeepAlive);
-        // armed anew every ten seconds: whatever fault there was is behind
-        if tick % 10_000 == 0 {
+        // armed anew now and then: whatever fault there was is behind
+        if tick % rearm_ticks == 0 {
             tell(&controller, &mut state, Command::Arm { acknowledges });
         }
         while let Some(segment) = strokes.due(tick) {
-            if controller.accept(&mut state, Command::Append(segment)).is_err() {
+            meter.begin();
+            let taken = controller.accept(&mut state, Command::Append(segment)).is_ok();
+            meter.append();
+            if !taken {
                 strokes.put_back();
                 break;
             }
         }
+        meter.begin();
         let telemetry = controller.tick(&mut state, &sensed);
+        meter.tick();
         fnv.take(&telemetry);
         fault = fault.or(telemetry.fault);
         acknowledges = telemetry.fault_number;
@@ -62,6 +99,9 @@ pub fn run(ticks: u32) -> Outcome {
         held_ticks += u32::from(matches!(telemetry.phase, Phase::Holding | Phase::Faulted));
         head.push_nm = if tick % 7_300 < 60 { PanTilt::new(0.4, -0.3) } else { PanTilt::default() };
         head.exchange(&telemetry.actuation);
+        if is_dear && tick % LOSES_EVERY == 0 {
+            head.lose_counts();
+        }
         sensed = head.sensed();
     }
     Outcome { hash: fnv.0, lit_ticks, held_ticks, fault }

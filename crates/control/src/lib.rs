@@ -37,6 +37,7 @@ mod squares;
 mod supervisor;
 mod switch_test;
 mod test_move;
+mod trig;
 mod watch;
 
 pub use axis::AxisConfig;

@@ -1,4 +1,5 @@
 use crate::limit::within;
+use crate::trig::sin_cos;
 use tracelight_rig::{Joint, PanTilt};
 
 /// The head's inertia and gravity in nine sums, `f32`; s and c are sine and cosine of tilt.
@@ -39,7 +40,7 @@ impl HeadModel {
 
     /// M(q) and C(q, q̇) + G(q).
     pub(crate) fn terms(&self, tilt_rad: f32, rate_rad_s: PanTilt<f32>) -> Terms {
-        let (s, c) = libm::sincosf(tilt_rad);
+        let (s, c) = sin_cos(tilt_rad);
         let d11 = 2.0 * s * c * (self.m11_ss - self.m11_cc) + (c * c - s * s) * self.m11_sc;
         let d12 = c * self.m12_s - s * self.m12_c;
         let (w1, w2) = (rate_rad_s.pan, rate_rad_s.tilt);

@@ -1,6 +1,7 @@
 //! Effects of a joint outside the rigid-body model: break-away friction, misplaced edges, ripple, cables.
 
 use crate::estimate::Learned;
+use crate::trig::sin_cos;
 
 /// What a joint has beyond its equations, as far as it was identified; zeros where it was not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +79,7 @@ impl Ripple {
         if self.sin_nm == 0.0 && self.cos_nm == 0.0 {
             return 0.0;
         }
-        let (sin, cos) = libm::sincosf(self.periods * angle_rad);
+        let (sin, cos) = sin_cos(self.periods * angle_rad);
         self.sin_nm * sin + self.cos_nm * cos
     }
 }

@@ -4,6 +4,8 @@ use core::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use tracelight_rig::PanTilt;
 
+use crate::trig::sin_cos;
+
 /// Number of a square in its grid: its row and its column, 16 bits each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Square(u32);
@@ -130,7 +132,7 @@ impl Common {
 /// How many squares fit round a row that begins at that tilt, rad, where it is narrowest.
 fn across(from_rad: f32, width_rad: f32) -> f32 {
     let furthest_rad = from_rad.abs().max((from_rad + width_rad).abs());
-    libm::floorf(TAU * libm::cosf(furthest_rad) / width_rad).max(1.0)
+    libm::floorf(TAU * sin_cos(furthest_rad).1 / width_rad).max(1.0)
 }
 
 /// The whole number below.

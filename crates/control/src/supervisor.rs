@@ -2,6 +2,7 @@ use tracelight_rig::{Darkness, DarknessSet, Fault, PanTilt, Phase, Segment, Sens
 
 use crate::config::Config;
 use crate::switch_test::SwitchTest;
+use crate::trig::hypotenuse;
 use crate::watch::LaserWatch;
 
 /// Share of the tolerance within which a head that left its stroke counts as back on it.
@@ -286,7 +287,7 @@ fn beyond_tolerance(at: &Situation<'_>) -> bool {
 /// Distance of the spot from its setpoint as a share of what is allowed: the tolerances are the semi-axes, in joint
 /// terms, of the allowed circle on the target.
 fn spot_error(at: &Situation<'_>) -> f32 {
-    tolerance(at).map_or(0.0, |t| libm::hypotf(at.error_rad.pan / t.pan, at.error_rad.tilt / t.tilt))
+    tolerance(at).map_or(0.0, |t| hypotenuse(at.error_rad.pan / t.pan, at.error_rad.tilt / t.tilt))
 }
 
 fn strayed(at: &Situation<'_>) -> bool {

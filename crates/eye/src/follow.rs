@@ -130,7 +130,7 @@ pub struct Follower {
     period_s: f64,
     /// How far a joint was from its setpoint at most of late while it was lit, rad, and for how many ticks that was watched.
     strayed_rad: f64,
-    /// The same of the last few ticks.
+    /// Likewise of the last few ticks.
     now_strayed_rad: f64,
     watched_ticks: u32,
     lost: u32,
@@ -180,12 +180,12 @@ impl Follower {
         self.wanted_s = Some(exposure_s);
     }
 
-    /// It is not awaited any more.
+    /// Ends that: none is awaited any more.
     pub const fn want_no_more(&mut self) {
         self.wanted_s = None;
     }
 
-    /// That image, once it is there.
+    /// Takes that image, once it is there.
     pub fn taken(&mut self) -> Option<Shot> {
         let taken = self.taken.take();
         if taken.is_some() {

@@ -6,14 +6,14 @@ use tracelight_task::Failure;
 /// Tells whether a rig that is not homed any more lost power, tick by tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PowerWatch {
-    /// How many faults there had been when it last said that it was homed.
+    /// Number of its faults when it last said that it was homed.
     homed_with: Option<u32>,
-    /// It was told to forget where it points, and was not homed since.
+    /// Whether it was told to forget where it points, and was not homed since.
     forgot: bool,
 }
 
 impl PowerWatch {
-    /// It is told to forget where it points: that it is not homed afterwards means nothing.
+    /// Tells that it is told to forget where it points: that it is not homed afterwards means nothing.
     pub const fn forget(&mut self) {
         self.forgot = true;
     }

@@ -178,7 +178,8 @@ mod tests {
         let lap = run_lap(&mut rig, (&plan, None), false, (&mut keep, &mut Nobody), task).unwrap();
         let (run, why) = (lap.run, lap.failure);
         assert!(
-            why.is_some_and(|why| why.code != "unhomed") && run.fault().is_some_and(tracelight_rig::Fault::loses_counts),
+            why.is_some_and(|why| why.code != "unhomed")
+                && run.fault().is_some_and(tracelight_rig::Fault::loses_counts),
             "{:?}",
             run.fault()
         );

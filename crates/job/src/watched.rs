@@ -65,10 +65,10 @@ enum Ended {
     GivenUp,
 }
 
-/// A camera that looks into what is off, while somebody may be at the wall.
+/// A camera that looks into what is off, while somebody may stand at the wall.
 #[derive(Default)]
 pub(crate) struct Looking {
-    /// It does.
+    /// Whether it does.
     pub(crate) on: bool,
     /// Set once that is to end: whoever stands there stopped it, or the whole job is over.
     pub(crate) stop: Stop,
@@ -253,7 +253,7 @@ impl Watched<'_> {
         self.is_ended() || self.looking.stop.is_wanted()
     }
 
-    /// The same, but for what somebody at the wall may let go on.
+    /// Likewise, but for what somebody at the wall may let go on.
     pub(crate) fn is_ended(&self) -> bool {
         self.task.stop.is_wanted() || self.failed.is_some() || self.unpowered
     }

@@ -25,6 +25,12 @@ impl<R: Rig> Session<R> {
             self.follow_unhomed();
             return;
         }
+        if self.state == State::Jogging {
+            if self.follow_jog() {
+                self.enter(State::Ready);
+            }
+            return;
+        }
         self.follow_job();
         self.begin_again();
         match self.next_state() {
@@ -54,7 +60,12 @@ impl<R: Rig> Session<R> {
     fn follow_unhomed(&mut self) {
         self.next = None;
         match self.state {
-            State::Homing => self.follow_turn(),
+            State::Homing | State::Jogging => {
+                let is_over = self.follow_jog();
+                if is_over && self.state == State::Jogging {
+                    self.enter(State::Unhomed);
+                }
+            }
             State::Parking if !self.is_parked() => {}
             State::Armed if self.armed_in == State::Unhomed && self.waited() < ARMED_TICKS => {}
             _ => {
@@ -64,10 +75,10 @@ impl<R: Rig> Session<R> {
         }
     }
 
-    /// Where a head is that is turned to be homed: disarmed at its end.
-    fn follow_turn(&mut self) {
+    /// Where a head is that is turned in the dark: disarmed at its end. Whether it is not turned any more.
+    fn follow_jog(&mut self) -> bool {
         let (told, waited) = (self.told, self.waited());
-        let Some(running) = &mut self.running else { return };
+        let Some(running) = &mut self.running else { return true };
         running.follow(&told);
         let answered = running.answered;
         if answered && told.phase == Phase::Done {
@@ -77,6 +88,7 @@ impl<R: Rig> Session<R> {
         if rests && (answered || waited > ANSWER_TICKS) {
             self.running = None;
         }
+        self.running.is_none()
     }
 
     /// The state after a tick without a fault of a rig that is homed.

@@ -19,7 +19,9 @@ pub enum Request {
     Home(PanTilt<i32>),
     /// Forget where the joints are.
     Unhome,
-    /// Let a head that is not homed be turned in the dark by dry jobs, and let out dots, until it is homed. Somebody armed before.
+    /// Turn the head in the dark along a job's way, from where it rests. It may not be homed.
+    Jog(Job),
+    /// Let a head that is not homed let out dots, wherever it is turned, until it is homed. Somebody armed before.
     Seek,
     /// Let out a dot of light for so many ticks where the head rests: on the way of a job that paused, or while its zero is sought. The light's budget
     /// may make it shorter.
@@ -52,6 +54,7 @@ impl Request {
         match self {
             Self::Home(_) => "home",
             Self::Unhome => "unhome",
+            Self::Jog(_) => "jog",
             Self::Seek => "seek",
             Self::Mark(_) => "mark",
             Self::Arm => "arm",
@@ -116,8 +119,9 @@ pub enum Refused {
 /// What may be asked in a state.
 pub(crate) const fn advice(state: State) -> &'static str {
     match state {
-        State::Unhomed => "home the head first, or arm and seek",
+        State::Unhomed => "home the head first; jog it, or arm and seek",
         State::Homing => "home it, or stop",
+        State::Jogging => "wait until it rests, or stop",
         State::Marking => "wait until the dot is out, or stop",
         State::Ready | State::Done => "arm, then trace",
         State::Armed => "trace or resume, or disarm",

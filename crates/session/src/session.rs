@@ -138,7 +138,7 @@ impl<R: Rig> Session<R> {
             }
             (Request::Disarm, Armed) => self.let_arming_go(),
             (Request::Seek, Armed) if self.armed_in == Unhomed => self.enter(Homing),
-            (Request::Trace(job), Homing) => self.turn(job)?,
+            (Request::Jog(job), Unhomed | Homing | Ready | Done) => self.jog(job)?,
             (Request::Trace(job), Ready | Done | Armed) if self.state != Armed || self.may_begin() => {
                 self.begin(job)?;
             }
@@ -287,9 +287,9 @@ impl<R: Rig> Session<R> {
         match self.state {
             State::Paused | State::Marking => self.enter(State::Stopped),
             state if state.is_on() => self.enter(State::Stopped),
-            State::Homing => {
+            State::Homing | State::Jogging => {
                 self.running = None;
-                self.enter(State::Unhomed);
+                self.enter(if self.told.homed { State::Ready } else { State::Unhomed });
             }
             State::Armed if self.armed_in == State::Unhomed => self.enter(State::Unhomed),
             State::Armed if self.is_resumable() => self.enter(State::Stopped),
@@ -332,14 +332,17 @@ impl<R: Rig> Session<R> {
         Ok(())
     }
 
-    /// Turns a head that is not homed, in the dark; nobody knows where it is but by what it was told before.
-    fn turn(&mut self, job: Job) -> Result<(), Refused> {
+    /// Turns the head in the dark, from where it rests; of one that is not homed nobody knows where that is but by what it was told before.
+    fn jog(&mut self, job: Job) -> Result<(), Refused> {
         check(&job)?;
-        if !job.dry {
-            return Err(Refused::NotArmed);
+        if self.told.homed {
+            self.check_start(&job)?;
         }
-        self.running = Some(Running::of(job));
+        self.running = Some(Running::of(Job { dry: true, again: None, ..job }));
         self.arm_rig();
+        if self.state != State::Homing {
+            self.enter(State::Jogging);
+        }
         Ok(())
     }
 
@@ -353,6 +356,14 @@ impl<R: Rig> Session<R> {
 
     /// Begins a job where the head rests.
     pub(crate) fn start(&mut self, job: Job) -> Result<(), Refused> {
+        self.check_start(&job)?;
+        self.running = Some(Running::of(job));
+        self.go_on();
+        Ok(())
+    }
+
+    /// Refuses a job that begins elsewhere than where the head rests.
+    fn check_start(&self, job: &Job) -> Result<(), Refused> {
         let Some(first) = job.segments.first() else { return Err(Refused::Empty) };
         let start = first.sample(0.0);
         let off = PanTilt::from_fn(|j| (start[j].position_rad - self.told.position_rad[j]).abs());
@@ -361,12 +372,7 @@ impl<R: Rig> Session<R> {
         if off_rad > THERE_RAD || off_rad.is_nan() {
             return Err(Refused::Elsewhere { off_rad });
         }
-        if !self.is_slower_than(START_RAD_S) {
-            return Err(Refused::Moving);
-        }
-        self.running = Some(Running::of(job));
-        self.go_on();
-        Ok(())
+        if self.is_slower_than(START_RAD_S) { Ok(()) } else { Err(Refused::Moving) }
     }
 
     fn check_resume(&self) -> Result<(), Refused> {

@@ -23,6 +23,7 @@ pub const ATTENDED_TICKS: u32 = 600_000;
 ///  Unhomed ◄── Arm ──► Armed ── Seek ──► Homing ── Home ──► Ready        Paused ── Mark ──► Marking ── its end ──► Paused
 ///     ▲                                     │
 ///     └──────────────── Stop ───────────────┘
+///                                                    Unhomed, Ready, Done ── Jog ──► Jogging ── its end ──► Unhomed, Ready
 /// ```
 ///
 /// A job that is done again and again is `Stepping`, `Pointing` or `Framing` where another one is `Tracing`; `Next` parks it and begins another one. A dry job needs no arming: it goes from `Ready`, `Done`, `Stopped` or `Paused` to `Tracing`. `Lost` is entered from anywhere, and never left.
@@ -32,6 +33,8 @@ pub enum State {
     Unhomed,
     /// The head is turned in the dark and lets out dots, to find where it points.
     Homing,
+    /// The head is turned in the dark, as somebody wants it.
+    Jogging,
     /// Dark, at rest, without a job.
     Ready,
     /// Somebody armed: a job may begin, or go on, within [`ARMED_TICKS`](crate::ARMED_TICKS). Still dark.
@@ -66,9 +69,10 @@ pub enum State {
 
 impl State {
     /// Every state.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Unhomed,
         Self::Homing,
+        Self::Jogging,
         Self::Ready,
         Self::Armed,
         Self::Tracing,
@@ -91,6 +95,7 @@ impl State {
         match self {
             Self::Unhomed => "unhomed",
             Self::Homing => "homing",
+            Self::Jogging => "jogging",
             Self::Ready => "ready",
             Self::Armed => "armed",
             Self::Tracing => "tracing",

@@ -37,6 +37,7 @@ mod swing;
 mod tour;
 mod travel;
 mod travel_time;
+mod turn;
 
 pub use binding::Binding;
 pub use course::{Course, CourseError, CoursePoint, Pace};
@@ -54,3 +55,4 @@ pub use steer::bounds::Bounds;
 pub use steer::{SteerError, Steered, steer, steer_no_faster};
 pub use swing::rest_to_rest;
 pub use travel_time::{Aimed, TravelTime};
+pub use turn::turn;

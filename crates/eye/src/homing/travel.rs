@@ -1,9 +1,9 @@
 //! How a head goes round of which nobody knows where it points: gently, a joint at a time, and back from whatever is in its way.
 
-use tracelight_rig::{Fault, Joint, PanTilt, Phase, RateLimit, Segment, TICK_F64_S, Telemetry};
+use tracelight_rig::{Fault, Joint, PanTilt, Phase, Segment, Telemetry};
 use tracelight_session::{Job, Request, State};
 use tracelight_task::Failure;
-use tracelight_trajectory::JointMotion;
+use tracelight_trajectory::turn;
 
 use crate::Driven;
 use crate::homing::state::{BEFORE_STOP_RAD, Homing, REST_TICKS};
@@ -111,33 +111,20 @@ impl<D: Driven> Homing<'_, D> {
 
     /// Moves in the dark from rest to rest, by its encoders, and rests; the fault that ended it, if one did.
     pub(super) fn go(&mut self, from: PanTilt<f64>, to: PanTilt<f64>) -> Result<Option<Fault>, Failure> {
-        let far = (to.pan - from.pan).abs().max((to.tilt - from.tilt).abs());
-        if far == 0.0 {
+        if from == to {
             return Ok(None);
         }
-        // a quintic from rest to rest is 1.875 times as fast as in the mean, and speeds up with 5.77 times way over time squared
         let machine = &self.driving.machine;
         let least = |limits: PanTilt<f64>| limits.pan.min(limits.tilt);
-        let most_rad_s = least(machine.speed_limit_rad_s).min(GENTLE_RAD_S);
-        let most_rad_s2 = least(machine.acceleration_limit_rad_s2).min(GENTLE_RAD_S2);
-        let time_s = (1.875 * far / most_rad_s).max((5.774 * far / most_rad_s2).sqrt());
-        let ticks = (time_s / TICK_F64_S).ceil().clamp(50.0, 30_000.0);
-        let coefficients = PanTilt::from_fn(|j| {
-            JointMotion::at_rest(from[j]).quintic_to(&JointMotion::at_rest(to[j]), ticks).map(|c| c as f32)
-        });
-        let tolerance_rad = PanTilt::new(STRAY_RAD, STRAY_RAD);
-        let rate_limit = RateLimit::PLANNED;
-        let segment = Segment {
-            start_tick: 0,
-            ticks: ticks as u16,
-            coefficients,
-            tolerance_rad,
-            gate: false,
-            rate_limit,
+        let speed_rad_s = least(machine.speed_limit_rad_s).min(GENTLE_RAD_S);
+        let acceleration_rad_s2 = least(machine.acceleration_limit_rad_s2).min(GENTLE_RAD_S2);
+        let turn = Segment {
+            tolerance_rad: PanTilt::new(STRAY_RAD, STRAY_RAD),
+            ..turn(from, to, (speed_rad_s, acceleration_rad_s2))
         };
         self.begin()?;
-        self.rig.ask(Request::Trace(Job { segments: vec![segment], dry: true, ..Job::default() }))?;
-        let most = 2 * segment.ticks + 5000;
+        self.rig.ask(Request::Jog(Job { segments: vec![turn], ..Job::default() }))?;
+        let most = 2 * u32::from(turn.ticks) + 5000;
         for _ in 0..most {
             let now = self.tick()?;
             if now.fault.is_some() {

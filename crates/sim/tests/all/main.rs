@@ -26,3 +26,4 @@ mod sweep;
 mod switches;
 mod tracking;
 mod troubled;
+mod turned;

@@ -16,23 +16,23 @@ use crate::shapes::{POSE, circle, house, plan_of, plan_of_all, plan_there, star}
 
 type Wall = Session<SimulatedRig>;
 
-fn at_the_wall(config: &RigConfig, seed: u64) -> Wall {
+pub(crate) fn at_the_wall(config: &RigConfig, seed: u64) -> Wall {
     let mut wall = Session::new(SimulatedRig::new(config, POSE, seed));
     step(&mut wall);
     assert_eq!(wall.state(), State::Ready);
     wall
 }
 
-fn step(wall: &mut Wall) -> Tick {
+pub(crate) fn step(wall: &mut Wall) -> Tick {
     tick(wall)
 }
 
-fn steps(wall: &mut Wall, ticks: usize) -> Vec<Tick> {
+pub(crate) fn steps(wall: &mut Wall, ticks: usize) -> Vec<Tick> {
     (0..ticks).map(|_| step(wall)).collect()
 }
 
 /// Ticks until a state is reached.
-fn until(wall: &mut Wall, state: State, most: usize) -> Vec<Tick> {
+pub(crate) fn until(wall: &mut Wall, state: State, most: usize) -> Vec<Tick> {
     let mut ticks = Vec::new();
     while wall.state() != state {
         assert!(ticks.len() < most, "still {:?} after {most} ticks, and not {state:?}", wall.state());
@@ -314,69 +314,6 @@ fn after_a_fault_it_goes_on_only_when_that_was_cleared_and_somebody_armed() {
     until(&mut wall, State::Done, 20_000);
 }
 
-#[test]
-fn a_head_that_is_not_homed_is_turned_and_lets_out_dots_only_once_somebody_armed() {
-    let config = RigConfig::report();
-    let mut wall = at_the_wall(&config, 3);
-    let turn = || Job { dry: true, ..job_of(&plan_of(&config, star(0.05)), true) };
-    wall.request(Request::Unhome).unwrap();
-    assert_eq!(wall.state(), State::Unhomed);
-    for request in [Request::Seek, Request::Mark(50), Request::Trace(turn())] {
-        assert!(matches!(wall.request(request), Err(Refused::State { .. })));
-    }
-    wall.request(Request::Arm).unwrap();
-    assert!(wall.request(Request::Trace(turn())).is_err(), "nobody knows where its strokes would fall");
-    steps(&mut wall, ARMED_TICKS as usize + 1);
-    assert_eq!(wall.state(), State::Unhomed, "arming is forgotten");
-    wall.request(Request::Arm).unwrap();
-    wall.request(Request::Seek).unwrap();
-    assert_eq!(
-        wall.request(Request::Trace(job_of(&plan_of(&config, star(0.05)), false))),
-        Err(Refused::NotArmed)
-    );
-    wall.request(Request::Trace(turn())).unwrap();
-    let turned = steps(&mut wall, 20_000);
-    assert!(turned.iter().any(|t| t.angle_rad.pan.abs() > 0.02) && turned.iter().all(|t| !t.light));
-    assert_eq!((wall.state(), wall.told().phase), (State::Homing, Phase::Dark));
-    wall.request(Request::Mark(60)).unwrap();
-    let dot = steps(&mut wall, 400).iter().filter(|t| t.light).count();
-    assert!((40..=70).contains(&dot), "{dot}");
-    wall.request(Request::Mark(60)).unwrap();
-    wall.request(Request::Stop).unwrap();
-    assert!(steps(&mut wall, 100).iter().skip(4).all(|t| !t.light) && wall.state() == State::Unhomed);
-    wall.request(Request::Park).unwrap();
-    assert_eq!(wall.state(), State::Parking);
-    until(&mut wall, State::Unhomed, 8000);
-    let counts = wall.rig().true_counts();
-    wall.request(Request::Home(counts)).unwrap();
-    until(&mut wall, State::Ready, 3);
-}
-
-#[test]
-fn a_dot_on_the_way_of_a_job_falls_on_its_stroke_and_the_job_goes_on() {
-    let config = RigConfig::report();
-    let plan = plan_of(&config, circle(0.2));
-    let mut wall = at_the_wall(&config, 0);
-    wall.request(Request::Arm).unwrap();
-    wall.request(Request::Trace(job_of(&plan, false))).unwrap();
-    steps(&mut wall, 2500);
-    assert!(wall.told().actuation.lights() && wall.request(Request::Mark(60)).is_err());
-    wall.request(Request::Pause(When::AtOnce)).unwrap();
-    until(&mut wall, State::Paused, 3);
-    steps(&mut wall, 300);
-    wall.request(Request::Mark(60)).unwrap();
-    let dot = until(&mut wall, State::Paused, 100);
-    let lit: Vec<&Tick> = dot.iter().filter(|t| t.light).collect();
-    assert!((40..=70).contains(&lit.len()), "{}", lit.len());
-    assert!(lit.iter().all(|t| t.spot.unwrap().distance(t.asked.unwrap()) < 1e-3));
-    wall.request(Request::Mark(500)).unwrap();
-    steps(&mut wall, 20);
-    wall.request(Request::Disarm).unwrap();
-    assert!(steps(&mut wall, 200).iter().skip(4).all(|t| !t.light));
-    wall.request(Request::Resume).unwrap();
-    until(&mut wall, State::Done, 20_000);
-}
-
 /// A request of any kind, legal here or not.
 fn any_request(dice: &mut Dice, jobs: &[Job]) -> Request {
     match dice.below(20) {
@@ -390,7 +327,8 @@ fn any_request(dice: &mut Dice, jobs: &[Job]) -> Request {
         10 => Request::Speed(dice.of(&[0.1, 0.5, 1.0, 2.0, 0.0, -1.0, f32::NAN])),
         11 => Request::Stop,
         12 => Request::Clear,
-        16 | 17 => Request::Seek,
+        16 => Request::Seek,
+        17 => Request::Jog(jobs[dice.below(jobs.len())].clone()),
         18 => Request::Mark(dice.of(&[30, 500])),
         19 if dice.below(20) == 0 => Request::Unhome,
         13 | 14 => Request::Next(jobs[dice.below(jobs.len())].clone()),
