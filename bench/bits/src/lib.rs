@@ -21,7 +21,7 @@ use tracelight_rig::{Command, Fault, PanTilt, Phase, Telemetry};
 pub const TICKS: u32 = 100_000;
 
 /// How often both encoders lose a count of a dear run, ticks.
-const LOSES_EVERY: u32 = 230;
+const LOSES_EVERY: u32 = 1500;
 
 /// What became of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

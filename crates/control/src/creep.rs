@@ -1,5 +1,6 @@
 use tracelight_rig::{Setpoint, TICK_S};
 
+use crate::elementary::root;
 use crate::estimate::Estimate;
 use crate::limit::within;
 
@@ -81,7 +82,7 @@ impl Creep {
 
     /// Whether the plan will be half a hop ahead of the joint amid the next one, or a whole one the other way.
     fn is_behind(&self, estimate: &Estimate, now: &Setpoint) -> bool {
-        let half_s = libm::sqrtf(self.hop_rad / self.acceleration_rad_s2);
+        let half_s = root(self.hop_rad / self.acceleration_rad_s2);
         let lag = after(now, half_s).position_rad - estimate.position_rad;
         let forward = lag * now.velocity_rad_s > 0.0;
         lag.abs() >= if forward { 0.5 * self.hop_rad } else { self.hop_rad }

@@ -22,6 +22,7 @@ mod config;
 mod controller;
 mod creep;
 mod crossed;
+mod elementary;
 mod estimate;
 mod law;
 mod light_budget;
@@ -37,7 +38,6 @@ mod squares;
 mod supervisor;
 mod switch_test;
 mod test_move;
-mod trig;
 mod watch;
 
 pub use axis::AxisConfig;

@@ -55,6 +55,9 @@ pub struct LightBudget {
     /// Upper bound of the exposure of any square, ticks: its value at the last lookup plus the light since.
     bound: f32,
     looked_up: u32,
+    /// The next bound, of the grids that were looked up for it so far, and how many those are.
+    next_bound: f32,
+    looked: usize,
     /// What any square may hold that is in no table, and all of the light of a head of which nobody knows where it points.
     beneath: Spent,
     /// Light of a head of which nobody knows where it points.
@@ -82,6 +85,8 @@ impl LightBudget {
             pending: 0,
             bound: 0.0,
             looked_up: 0,
+            next_bound: 0.0,
+            looked: 0,
             beneath: Spent::NOTHING,
             recent: RecentLight::NONE,
             shut_ticks: u32::MAX,
@@ -104,6 +109,7 @@ impl LightBudget {
             return self.settle(config, self.now.wrapping_sub(1));
         }
         self.bound += 1.0;
+        self.next_bound += 1.0;
         match angle_rad {
             Some(angle_rad) if self.common.holds(angle_rad) => self.pending += 1,
             _ => self.charge(config, angle_rad.and_then(Direction::of)),
@@ -172,17 +178,24 @@ impl LightBudget {
         squares.any(|(grid, square)| grid.find(square).map_or(is_new_shut, |spent| spent.is_shut(now, most)))
     }
 
-    /// Looks up now and then what any square holds at most.
+    /// Looks up now and then what any square holds at most, one grid in a tick.
     fn look_up(&mut self, most: f32) {
         if self.now.wrapping_sub(self.looked_up) < LOOK_UP_TICKS {
             return;
         }
         let now = self.now;
         let holds = |spent: &mut Spent| if spent.is_shut(now, most) { most } else { spent.held(now) };
-        let beneath = holds(&mut self.beneath);
-        self.bound =
-            self.grids.iter_mut().flat_map(|grid| &mut grid.spent).map(holds).fold(beneath, f32::max);
-        self.looked_up = now;
+        if self.looked == 0 {
+            // what any new square may hold
+            self.next_bound = holds(&mut self.beneath);
+        }
+        if let Some(grid) = self.grids.get_mut(self.looked) {
+            self.next_bound = grid.spent.iter_mut().map(holds).fold(self.next_bound, f32::max);
+            self.looked += 1;
+            return;
+        }
+        self.bound = self.next_bound.max(holds(&mut self.beneath));
+        (self.looked, self.looked_up) = (0, now);
     }
 
     /// Whether a head of which nobody knows where it points may light all of a dot of so many ticks.

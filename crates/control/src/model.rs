@@ -1,5 +1,5 @@
+use crate::elementary::sin_cos;
 use crate::limit::within;
-use crate::trig::sin_cos;
 use tracelight_rig::{Joint, PanTilt};
 
 /// The head's inertia and gravity in nine sums, `f32`; s and c are sine and cosine of tilt.

@@ -1,5 +1,6 @@
 use tracelight_rig::{PanTilt, SPEED_RANGE, Segment, Setpoint, TICK_S, ease_within};
 
+use crate::elementary::root;
 use crate::limit::within;
 
 /// Segments the controller can hold ahead of time.
@@ -298,7 +299,7 @@ impl Player {
             return self.asked_rate;
         }
         let limit = self.current().map_or(1.0, |segment| {
-            libm::sqrtf(segment.rate_limit_squared(self.since(segment.start_tick) + self.rate))
+            root(segment.rate_limit_squared(self.since(segment.start_tick) + self.rate))
         });
         self.asked_rate.min(limit)
     }

@@ -1,7 +1,7 @@
 //! Effects of a joint outside the rigid-body model: break-away friction, misplaced edges, ripple, cables.
 
+use crate::elementary::sin_cos;
 use crate::estimate::Learned;
-use crate::trig::sin_cos;
 
 /// What a joint has beyond its equations, as far as it was identified; zeros where it was not.
 #[derive(Clone, Copy, Debug, PartialEq)]

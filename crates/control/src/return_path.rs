@@ -1,6 +1,7 @@
 use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_S};
 
 use crate::config::{Config, Drive};
+use crate::elementary::root;
 use crate::estimate::Estimate;
 use crate::limit::within;
 
@@ -79,7 +80,7 @@ struct Most {
 
 fn step(from: &Setpoint, goal_rad: f32, most: &Most) -> Setpoint {
     let left = goal_rad - from.position_rad;
-    let braking = libm::sqrtf(2.0 * most.acceleration_rad_s2 * left.abs());
+    let braking = root(2.0 * most.acceleration_rad_s2 * left.abs());
     let wanted = braking.min(left.abs() / APPROACH_S).min(most.rate_rad_s);
     let wanted = if left < 0.0 { -wanted } else { wanted };
     let acceleration = within((wanted - from.velocity_rad_s) / TICK_S, most.acceleration_rad_s2);

@@ -4,7 +4,7 @@ use core::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use tracelight_rig::PanTilt;
 
-use crate::trig::sin_cos;
+use crate::elementary::sin_cos;
 
 /// Number of a square in its grid: its row and its column, 16 bits each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,6 @@ use tracelight_rig::{Darkness, DarknessSet, Fault, PanTilt, Phase, Segment, Sens
 
 use crate::config::Config;
 use crate::switch_test::SwitchTest;
-use crate::trig::hypotenuse;
 use crate::watch::LaserWatch;
 
 /// Share of the tolerance within which a head that left its stroke counts as back on it.
@@ -284,14 +283,17 @@ fn beyond_tolerance(at: &Situation<'_>) -> bool {
         .is_some_and(|t| exceeds(at.error_rad.pan.abs(), t.pan) || exceeds(at.error_rad.tilt.abs(), t.tilt))
 }
 
-/// Distance of the spot from its setpoint as a share of what is allowed: the tolerances are the semi-axes, in joint
+/// Square of the spot's distance from its setpoint as a share of what is allowed: the tolerances are the semi-axes, in joint
 /// terms, of the allowed circle on the target.
-fn spot_error(at: &Situation<'_>) -> f32 {
-    tolerance(at).map_or(0.0, |t| hypotenuse(at.error_rad.pan / t.pan, at.error_rad.tilt / t.tilt))
+fn spot_error_squared(at: &Situation<'_>) -> f32 {
+    tolerance(at).map_or(0.0, |t| {
+        let off = PanTilt::from_fn(|j| at.error_rad[j] / t[j]);
+        off.pan * off.pan + off.tilt * off.tilt
+    })
 }
 
 fn strayed(at: &Situation<'_>) -> bool {
-    exceeds(spot_error(at), 1.0)
+    exceeds(spot_error_squared(at), 1.0)
 }
 
 /// Whether the plan's clock must stand until the head is back: where there is to be light, off the stroke or in doubt of
@@ -299,7 +301,7 @@ fn strayed(at: &Situation<'_>) -> bool {
 /// go on.
 fn must_hold(at: &Situation<'_>) -> bool {
     let lit = at.segment.is_some_and(|segment| segment.gate);
-    let lost = exceeds(spot_error(at), LOST_TOLERANCES);
+    let lost = exceeds(spot_error_squared(at), LOST_TOLERANCES * LOST_TOLERANCES);
     let unsure = at.doubtful || !at.tested || !at.tried || !at.steady;
     (lit && (strayed(at) || unsure)) || lost
 }
@@ -319,5 +321,5 @@ pub(crate) fn rests(rate_rad_s: PanTilt<f32>) -> bool {
 }
 
 fn returned(at: &Situation<'_>) -> bool {
-    is_still(at) && !at.doubtful && at.steady && spot_error(at) < RETURN_SHARE
+    is_still(at) && !at.doubtful && at.steady && spot_error_squared(at) < RETURN_SHARE * RETURN_SHARE
 }

@@ -2,6 +2,7 @@ use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_S};
 
 use crate::axis::AxisConfig;
 use crate::config::Config;
+use crate::elementary::root;
 use crate::servo::Reference;
 
 /// Share of a motor's torque a test move uses.
@@ -78,5 +79,5 @@ impl TestMove {
 
 /// How long a joint has to speed up so that its way is long enough, s.
 fn part_s(axis: &AxisConfig, most_rad_s2: f32) -> f32 {
-    libm::sqrtf(LEAST_COUNTS * axis.count_rad / most_rad_s2).max(LEAST_S)
+    root(LEAST_COUNTS * axis.count_rad / most_rad_s2).max(LEAST_S)
 }

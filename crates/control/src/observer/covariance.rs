@@ -1,5 +1,6 @@
 use tracelight_rig::TICK_S;
 
+use crate::elementary::root;
 use crate::limit::within;
 
 /// Number of quantities a [`Kalman`](super::kalman::Kalman) filter estimates.
@@ -15,14 +16,6 @@ pub(super) const INERTIA: usize = 5;
 
 /// One number a quantity.
 pub(super) type Row = [f32; STATES];
-
-fn dot(a: &Row, b: &Row) -> f32 {
-    let mut sum = 0.0;
-    for i in 0..STATES {
-        sum += a[i] * b[i];
-    }
-    sum
-}
 
 /// What is further off than three standard deviations is a surprise.
 pub(super) const DEVIATIONS_SQUARED: f32 = 9.0;
@@ -46,22 +39,28 @@ impl Covariance {
     #[inline]
     pub(super) fn predict(&mut self, velocity_row: &Row, noise: &Row) {
         let p = &mut self.0;
-        let mut velocity = [0.0; STATES];
-        for (entry, line) in velocity_row.iter().zip(p.iter()) {
-            for (sum, value) in velocity.iter_mut().zip(line) {
-                *sum += entry * value;
+        let row = velocity_row;
+        // the place changes no velocity
+        let mut velocity = p[VELOCITY].map(|entry| row[VELOCITY] * entry);
+        for k in LOAD..STATES {
+            for i in 0..STATES {
+                velocity[i] += row[k] * p[k][i];
             }
         }
         let mut position = [0.0; STATES];
-        for (i, sum) in position.iter_mut().enumerate() {
-            *sum = p[POSITION][i] + 0.5 * TICK_S * (p[VELOCITY][i] + velocity[i]);
+        for i in 0..STATES {
+            position[i] = p[POSITION][i] + 0.5 * TICK_S * (p[VELOCITY][i] + velocity[i]);
         }
-        let (vv, pv) = (dot(&velocity, velocity_row), dot(&position, velocity_row));
+        let (mut vv, mut pv) = (row[VELOCITY] * velocity[VELOCITY], row[VELOCITY] * position[VELOCITY]);
+        for k in LOAD..STATES {
+            vv += row[k] * velocity[k];
+            pv += row[k] * position[k];
+        }
         let pp = position[POSITION] + 0.5 * TICK_S * (position[VELOCITY] + pv);
         (velocity[POSITION], velocity[VELOCITY]) = (pv, vv);
         (position[POSITION], position[VELOCITY]) = (pp, pv);
-        for (i, line) in p.iter_mut().enumerate() {
-            (line[POSITION], line[VELOCITY]) = (position[i], velocity[i]);
+        for i in 0..STATES {
+            (p[i][POSITION], p[i][VELOCITY]) = (position[i], velocity[i]);
         }
         (p[POSITION], p[VELOCITY]) = (position, velocity);
         for (i, variance) in noise.iter().enumerate() {
@@ -80,7 +79,7 @@ impl Covariance {
         let own = self.variance_of_place(age_s);
         let needed = (innovation * innovation / DEVIATIONS_SQUARED - variance).min(FURTHEST);
         if needed > own && own > 0.0 {
-            let by = libm::sqrtf((needed / own).min(MOST));
+            let by = root((needed / own).min(MOST));
             for (i, line) in self.0.iter_mut().enumerate() {
                 for (j, entry) in line.iter_mut().enumerate() {
                     *entry *= if i <= LOAD { by } else { 1.0 } * if j <= LOAD { by } else { 1.0 };
@@ -104,7 +103,7 @@ impl Covariance {
     /// Standard deviation of load and friction together, whichever way the joint turns, N m.
     pub(super) fn deviation_of_torque(&self) -> f32 {
         let p = &self.0;
-        libm::sqrtf(p[LOAD][LOAD] + p[FRICTION][FRICTION] + 2.0 * p[LOAD][FRICTION].abs())
+        root(p[LOAD][LOAD] + p[FRICTION][FRICTION] + 2.0 * p[LOAD][FRICTION].abs())
     }
 
     /// Gains for a measurement of where the joint was `age_s` ago (H = [1 −age 0 …]), and P after it, in Joseph's form,
@@ -117,12 +116,10 @@ impl Covariance {
         for entry in gain.iter_mut().skip(LOAD + 1) {
             *entry = if pushed { 0.0 } else { *entry };
         }
-        for (i, line) in self.0.iter_mut().enumerate() {
-            for (j, entry) in line.iter_mut().enumerate() {
-                let (both, crossed) = (gain[i] * gain[j], gain[i] * seen[j] + seen[i] * gain[j]);
-                *entry += innovation * both - crossed;
-            }
-        }
+        self.change(|i, j, entry| {
+            let (both, crossed) = (gain[i] * gain[j], gain[i] * seen[j] + seen[i] * gain[j]);
+            entry + (innovation * both - crossed)
+        });
         self.keep_sound();
         gain
     }
@@ -133,13 +130,22 @@ impl Covariance {
         let mut deviations = [0.0; STATES];
         for (i, deviation) in deviations.iter_mut().enumerate() {
             self.0[i][i] = self.0[i][i].max(0.0);
-            *deviation = libm::sqrtf(self.0[i][i]);
+            *deviation = root(self.0[i][i]);
         }
-        for (i, line) in self.0.iter_mut().enumerate() {
-            for (j, entry) in line.iter_mut().enumerate() {
-                if i != j {
-                    *entry = within(*entry, MOST * deviations[i] * deviations[j]);
-                }
+        self.change(
+            |i, j, entry| {
+                if i == j { entry } else { within(entry, MOST * deviations[i] * deviations[j]) }
+            },
+        );
+    }
+
+    /// Changes each entry and the one across the diagonal, which is the same, at once.
+    #[inline]
+    fn change(&mut self, to: impl Fn(usize, usize, f32) -> f32) {
+        for i in 0..STATES {
+            for j in 0..=i {
+                let entry = to(i, j, self.0[i][j]);
+                (self.0[i][j], self.0[j][i]) = (entry, entry);
             }
         }
     }

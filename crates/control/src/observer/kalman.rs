@@ -7,6 +7,7 @@ use super::edge_table::EdgeTable;
 use super::tuning::KalmanTuning;
 use crate::axis::AxisConfig;
 use crate::crossed::{crossed, last_edge};
+use crate::elementary::root;
 use crate::estimate::{Effort, Estimate, Learned};
 use crate::limit::within;
 
@@ -51,7 +52,7 @@ impl Kalman {
     pub(super) fn begin(axis: &AxisConfig, count: i32, speed_rad_s: f32, tuning: KalmanTuning) -> Self {
         let unknown = axis.unknown_nm;
         // anywhere in its count: the deviation of an even distribution
-        let anywhere = axis.count_rad / libm::sqrtf(12.0);
+        let anywhere = axis.count_rad / root(12.0);
         let covariance = Covariance::independent(&[
             anywhere,
             speed_rad_s,

@@ -67,11 +67,13 @@ impl Recount {
         let moved = if let Some(contest) = &mut self.contest {
             contest.rival.predict(axis, effort, measured)
         } else {
-            let Some((rival, moved)) = before.and_then(|before| before.rival(axis, &fit, moved)) else {
-                return;
-            };
-            self.contest = Some(Contest::of(rival));
-            moved
+            let (Some(before), Some((by, truly))) = (before, explained(&fit, moved)) else { return };
+            let contest = self.contest.insert(Contest::of(before));
+            contest.rival.lose(axis, by);
+            if fit.edge.is_none() {
+                contest.rival.overdue = 0.0;
+            }
+            truly
         };
         let Some(contest) = &mut self.contest else { return };
         let (rival_fit, less) = contest.rival.correct(axis, effort, moved, measured);
@@ -215,31 +217,30 @@ impl Hypothesis {
         leaves && !creeps && self.filter.is_calm()
     }
 
-    /// One that explains what did not fit this one, as it was before it saw so many edges, and the edges that truly came.
-    fn rival(&self, axis: &AxisConfig, fit: &Fit, moved: i32) -> Option<(Self, i32)> {
-        /// What is off a whole count by more than this many standard deviations squared is not off by a whole count.
-        const WHOLE: f32 = 9.0;
-        let mut rival = *self;
-        let (by, moved) = match (fit.edge, fit.overdue) {
-            (Some(edge), _) if edge.is_surprise() => {
-                let early = edge.counts * moved as f32 > 0.0;
-                let beside = edge.counts.abs() - 1.0;
-                if early && beside * beside > WHOLE * edge.variance {
-                    // it came from nowhere, or one of them did
-                    (-moved.signum(), moved - moved.signum())
-                } else {
-                    (if edge.counts > 0.0 { -1 } else { 1 }, moved)
-                }
-            }
-            // it came, and was not counted
-            (None, Some(overdue)) => {
-                rival.overdue = 0.0;
-                (if overdue.counts > 0.0 { -1 } else { 1 }, 0)
-            }
-            _ => return None,
-        };
-        rival.lost = rival.lost.wrapping_add(by);
-        let _ = rival.filter.take_count(axis, self.filter.count().wrapping_add(by));
-        Some((rival, moved))
+    /// Becomes one that explains what did not fit it, with so many more counts lost, before it sees the edges that truly came.
+    fn lose(&mut self, axis: &AxisConfig, by: i32) {
+        self.lost = self.lost.wrapping_add(by);
+        let _ = self.filter.take_count(axis, self.filter.count().wrapping_add(by));
+    }
+}
+
+/// How many counts more than is believed are lost, if a tick that did not fit is to be explained, and how many edges then truly came in it.
+fn explained(fit: &Fit, moved: i32) -> Option<(i32, i32)> {
+    /// What is off a whole count by more than this many standard deviations squared is not off by a whole count.
+    const WHOLE: f32 = 9.0;
+    match (fit.edge, fit.overdue) {
+        (Some(edge), _) if edge.is_surprise() => {
+            let early = edge.counts * moved as f32 > 0.0;
+            let beside = edge.counts.abs() - 1.0;
+            Some(if early && beside * beside > WHOLE * edge.variance {
+                // it came from nowhere, or one of them did
+                (-moved.signum(), moved - moved.signum())
+            } else {
+                (if edge.counts > 0.0 { -1 } else { 1 }, moved)
+            })
+        }
+        // it came, and was not counted
+        (None, Some(overdue)) => Some((if overdue.counts > 0.0 { -1 } else { 1 }, 0)),
+        _ => None,
     }
 }

@@ -4,6 +4,7 @@ use tracelight_rig::{Measurement, TICK_S};
 
 use super::scale_filter::Surprise;
 use crate::axis::AxisConfig;
+use crate::elementary::root;
 use crate::estimate::{Effort, Estimate};
 use crate::limit::within;
 
@@ -48,12 +49,20 @@ pub(super) struct KnockWatch {
     filled: usize,
     /// Ticks since the surprise that is looked into.
     since: Option<u32>,
+    inquiry: Inquiry,
     calm_ticks: u32,
 }
 
 impl KnockWatch {
     pub(super) const fn new() -> Self {
-        Self { kept: [(0.0, 0.0); KEPT], next: 0, filled: 0, since: None, calm_ticks: 0 }
+        Self {
+            kept: [(0.0, 0.0); KEPT],
+            next: 0,
+            filled: 0,
+            since: None,
+            inquiry: Inquiry::NONE,
+            calm_ticks: 0,
+        }
     }
 
     /// One tick; whether it shows that the joint was thrown a moment ago, while it was lit.
@@ -74,12 +83,15 @@ impl KnockWatch {
         let calm = self.calm_ticks >= CALM_TICKS;
         self.calm_ticks = if surprised { 0 } else { self.calm_ticks.saturating_add(1) };
         match self.since {
-            None if surprised && calm && lit && self.filled == KEPT => self.since = Some(0),
+            None if surprised && calm && lit && self.filled == KEPT => {
+                (self.since, self.inquiry) = (Some(0), Inquiry::NONE);
+            }
             None => {}
-            Some(ticks) if ticks + 1 < VERDICT_TICKS => self.since = Some(ticks + 1),
-            Some(_) => {
-                self.since = None;
-                return self.is_thrown(axis);
+            Some(ticks) => {
+                let now = ticks + 1;
+                self.look_back(now);
+                self.since = (now < VERDICT_TICKS).then_some(now);
+                return now >= VERDICT_TICKS && self.inquiry.is_thrown(axis);
             }
         }
         false
@@ -101,10 +113,61 @@ impl KnockWatch {
         self.filled = (self.filled + 1).min(KEPT);
     }
 
+    /// Takes two more of the ticks that were kept about the surprise, so many ticks after it: no tick has them all to do, and at the verdict all are taken.
+    fn look_back(&mut self, now: u32) {
+        for _ in 0..2 {
+            let tick = self.inquiry.next;
+            let Some(back) = now.checked_add_signed(-tick) else { return };
+            let back = back as usize;
+            let kept = self.kept.get((self.next + KEPT - 1 - back.min(KEPT - 1)) % KEPT).copied();
+            self.inquiry.take(kept.unwrap_or_default());
+        }
+    }
+}
+
+/// A joint's way about a surprise, as far as it was taken.
+#[derive(Clone, Copy, Debug)]
+struct Inquiry {
+    /// The tick that is taken next, from the surprise.
+    next: i32,
+    /// Angle in the first.
+    origin: f32,
+    /// Speed and way that are known since then.
+    speed: f32,
+    way: f32,
+    /// What lies beside that way, before the surprise and after it.
+    before: Sums,
+    after: Sums,
+}
+
+impl Inquiry {
+    const NONE: Self =
+        Self { next: BEFORE.0, origin: 0.0, speed: 0.0, way: 0.0, before: Sums::NONE, after: Sums::NONE };
+
+    fn take(&mut self, (angle, sped_up): (f32, f32)) {
+        let tick = self.next;
+        if tick > AFTER.1 {
+            return;
+        }
+        self.next += 1;
+        if tick == BEFORE.0 {
+            self.origin = angle;
+        } else {
+            self.way += TICK_S * (self.speed + 0.5 * TICK_S * sped_up);
+            self.speed += TICK_S * sped_up;
+        }
+        let beside = angle - self.origin - self.way;
+        if tick <= BEFORE.1 {
+            self.before.add(tick as f32 - middle(BEFORE), beside);
+        } else if tick >= AFTER.0 {
+            self.after.add(tick as f32 - middle(AFTER), beside);
+        }
+    }
+
     /// Whether what is beside its way after the surprise is beside by some counts, and no faster.
     fn is_thrown(&self, axis: &AxisConfig) -> bool {
-        let before = self.fitted(BEFORE, false);
-        let after = self.fitted(AFTER, true);
+        let before = self.before.fit(middle(BEFORE), false);
+        let after = self.after.fit(middle(AFTER), true);
         let counts = (after.at(BUMPED_AT) - before.at(BUMPED_AT)) / axis.count_rad;
         let faster = BUMP_TICKS * (after.slope_at(OVER_AT) - before.slope_at(OVER_AT)) / axis.count_rad;
         let unexplained = after.rms.max(before.rms) / axis.count_rad;
@@ -112,32 +175,10 @@ impl KnockWatch {
             && faster.abs() < MOST_FASTER * counts.abs()
             && unexplained < MOST_UNEXPLAINED * counts.abs()
     }
+}
 
-    /// What lies beside the way that is known, over some ticks from the surprise: a line, or a parabola.
-    fn fitted(&self, (from, to): (i32, i32), bent: bool) -> Fit {
-        let middle = 0.5 * (from + to) as f32;
-        let mut sums = Sums::default();
-        let (mut speed, mut way) = (0.0, 0.0);
-        let first = BEFORE.0;
-        let origin = self.kept_at(first).0;
-        for tick in first..=to {
-            let (angle, sped_up) = self.kept_at(tick);
-            if tick > first {
-                way += TICK_S * (speed + 0.5 * TICK_S * sped_up);
-                speed += TICK_S * sped_up;
-            }
-            if tick >= from {
-                sums.add(tick as f32 - middle, angle - origin - way);
-            }
-        }
-        sums.fit(middle, bent)
-    }
-
-    /// What was kept so many ticks after the surprise.
-    fn kept_at(&self, tick: i32) -> (f32, f32) {
-        let back = (AFTER.1 - tick) as usize + 1;
-        self.kept.get((self.next + KEPT - back.min(KEPT)) % KEPT).copied().unwrap_or_default()
-    }
+fn middle((from, to): (i32, i32)) -> f32 {
+    0.5 * (from + to) as f32
 }
 
 /// Friction of a joint that turns so and is driven by that torque, N m: what holds it, near standstill.
@@ -149,7 +190,7 @@ fn friction_nm(axis: &AxisConfig, rate_rad_s: f32, driven_nm: f32) -> f32 {
 }
 
 /// Sums of a regression about the middle of its ticks, which lie evenly about it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Sums {
     n: f32,
     t2: f32,
@@ -161,6 +202,8 @@ struct Sums {
 }
 
 impl Sums {
+    const NONE: Self = Self { n: 0.0, t2: 0.0, t4: 0.0, z: 0.0, tz: 0.0, t2z: 0.0, z2: 0.0 };
+
     fn add(&mut self, t: f32, z: f32) {
         let t2 = t * t;
         self.n += 1.0;
@@ -179,7 +222,7 @@ impl Sums {
         let norm = self.t4 - self.n * spread * spread;
         let bend = if bent { (self.t2z - spread * self.z) / norm } else { 0.0 };
         let left = self.z2 - self.n * mean * mean - slope * self.tz - bend * bend * norm;
-        Fit { middle, mean, slope, bend, spread, rms: libm::sqrtf(left.max(0.0) / self.n) }
+        Fit { middle, mean, slope, bend, spread, rms: root(left.max(0.0) / self.n) }
     }
 }
 
@@ -212,7 +255,7 @@ mod tests {
     use super::*;
 
     fn fit(of: impl Fn(f32) -> f32, bent: bool) -> Fit {
-        let mut sums = Sums::default();
+        let mut sums = Sums::NONE;
         (-10..=10).for_each(|t: i16| sums.add(f32::from(t), of(f32::from(t))));
         sums.fit(100.0, bent)
     }

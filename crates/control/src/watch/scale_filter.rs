@@ -4,6 +4,7 @@ use tracelight_rig::{Measurement, TICK_S};
 
 use crate::axis::AxisConfig;
 use crate::crossed::{crossed, last_edge};
+use crate::elementary::root;
 use crate::estimate::{Effort, Learned};
 use crate::limit::within;
 
@@ -129,7 +130,7 @@ impl ScaleFilter {
 
     /// Standard deviation of that.
     pub(super) fn scale_deviation(&self) -> f32 {
-        libm::sqrtf(self.covariance[SCALE][SCALE])
+        root(self.covariance[SCALE][SCALE])
     }
 
     /// One tick. A scale that is `known` hardly drifts, and what surprises it is not explained by torques friction cannot have.
@@ -289,6 +290,6 @@ impl ScaleFilter {
         self.speed_rad_s += gain[SPEED] * innovation;
         self.load_nm += gain[LOAD] * innovation;
         self.scale = (self.scale + gain[SCALE] * innovation).clamp(LEAST_SCALE, MOST_SCALE);
-        innovation / libm::sqrtf(total)
+        innovation / root(total)
     }
 }
