@@ -10,7 +10,7 @@ use tracelight_stroke::Point;
 
 use crate::painted::Painted;
 use crate::seen::SeenMark;
-use crate::spots::{History, Sight, Sighting, SpotWatch};
+use crate::spots::{History, KEPT_TICKS, Sight, Sighting, SpotWatch};
 use crate::{Eye, Shot};
 
 /// What is known when it begins.
@@ -211,6 +211,11 @@ impl Follower {
         self.period_s
     }
 
+    /// Begins to listen for images anew: for a while they were somebody else's.
+    pub fn hear_again(&mut self) {
+        (self.heard_s, self.last) = (f64::INFINITY, None);
+    }
+
     /// Why it sees nothing, if so.
     #[must_use]
     pub const fn blind(&self) -> Option<Blind> {
@@ -279,6 +284,11 @@ impl Follower {
 
     fn remember(&mut self, telemetry: &Telemetry, asked: Option<Point>) {
         self.now_s = f64::from(telemetry.tick) * TICK_F64_S;
+        self.heard_s = self.heard_s.min(self.now_s);
+        if self.asked.len() > 2 * KEPT_TICKS {
+            self.asked.drain(..KEPT_TICKS);
+            self.first_tick = self.first_tick.wrapping_add(KEPT_TICKS as u32);
+        }
         if self.asked.is_empty() {
             (self.first_tick, self.heard_s, self.aged_s) = (telemetry.tick, self.now_s, self.now_s);
         }

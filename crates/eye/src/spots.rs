@@ -36,6 +36,9 @@ pub enum Light {
 /// How much longer than is believed of a relay it may take, s.
 const SLACK_S: f64 = 0.005;
 
+/// For so long at least what was is known, ticks: five minutes, longer than any image is on its way and any dots take.
+pub(crate) const KEPT_TICKS: usize = 300_000;
+
 impl History {
     /// Of a laser with that relay.
     #[must_use]
@@ -53,6 +56,10 @@ impl History {
     pub fn push(&mut self, telemetry: &Telemetry) {
         if self.ticks.is_empty() {
             self.first = telemetry.tick;
+        }
+        if self.ticks.len() > 2 * KEPT_TICKS {
+            self.ticks.drain(..KEPT_TICKS);
+            self.first = self.first.wrapping_add(KEPT_TICKS as u32);
         }
         self.ticks.push((telemetry.position_rad.map(f64::from), telemetry.actuation.lights()));
     }

@@ -25,6 +25,7 @@ impl Driven for Aside<'_, '_> {
         if watched.unpowered {
             return Err(lost_power());
         }
+        watched.now = tick.telemetry.tick;
         tick.telemetry.plan_tick = watched.plan_tick;
         if let Err(error) = watched.keep.tick(&watched.joined, &tick) {
             watched.failed = watched.failed.take().or(Some(error));

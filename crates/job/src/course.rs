@@ -45,6 +45,8 @@ pub(crate) struct Ended {
     /// The fault that is latched.
     pub(crate) fault: Option<Fault>,
     pub(crate) state: State,
+    /// Where it stood.
+    pub(crate) now: Snapshot,
 }
 
 /// Arms a rig for a job, as who calls for it has done both acts, and lets it run to its end, or to where nobody is there to go on with it. Whatever ends it darkens
@@ -70,7 +72,12 @@ pub(crate) fn drive(
         let laps = wall.snapshot().laps;
         let last = tick(wall);
         if power.is_lost(&last.telemetry) {
-            return Ok(Ended { failure: Some(lost_power()), fault: None, state: wall.state() });
+            return Ok(Ended {
+                failure: Some(lost_power()),
+                fault: None,
+                state: wall.state(),
+                now: wall.snapshot(),
+            });
         }
         let now = wall.snapshot();
         if let Err(why) = course.keep(keep, last, &now, laps) {
@@ -98,12 +105,18 @@ pub(crate) fn drive(
             hands.refused(&why);
         }
     }
-    if wall.told().actuation.lights() {
+    let (state, now) = (wall.state(), wall.snapshot());
+    // whatever ended it, and whether its gate is open or not
+    let lights = wall.told().actuation.lights();
+    if wall.state() != State::Done {
+        let _ = wall.request(Request::Stop);
+    }
+    if lights {
         let laps = wall.snapshot().laps;
         let last = darken(wall);
         course.keep(keep, last, &wall.snapshot(), laps)?;
     }
-    Ok(Ended { failure: None, fault: wall.told().fault, state: wall.state() })
+    Ok(Ended { failure: None, fault: wall.told().fault, state, now })
 }
 
 fn darken(wall: &mut Session<&mut SimulatedRig>) -> Tick {

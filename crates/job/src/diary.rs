@@ -40,4 +40,12 @@ impl Diary {
             self.notes.push(format!("{how}, for {:.1} s", at_s - since_s));
         }
     }
+
+    /// Writes down that it never went on.
+    pub(crate) fn end(&mut self, now: &Snapshot) {
+        if let Some((since_s, how)) = self.rests.take() {
+            let lasted_s = seconds(now.tick) - since_s;
+            self.notes.push(format!("{how}, for {lasted_s:.1} s; it did not go on"));
+        }
+    }
 }

@@ -12,6 +12,29 @@ pub enum Ask {
     Step(Step),
 }
 
+/// How a camera looks into what is suddenly off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// It begins, or begins again.
+    Begun,
+    /// Somebody stopped it: it begins again once they have armed and let it go on.
+    Stopped,
+    /// It is done, and the job goes on or ends.
+    Over,
+}
+
+impl Look {
+    /// Stable name for scripts.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Begun => "begun",
+            Self::Stopped => "stopped",
+            Self::Over => "over",
+        }
+    }
+}
+
 /// Which stroke comes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
@@ -62,8 +85,8 @@ pub trait Hands {
     /// Told that the frame of the drawing is drawn again and again from now on, until [`Step::Next`] is asked for, or that it is over.
     fn frames(&mut self, _on: bool) {}
 
-    /// Told that a camera looks into what is suddenly off, in the dark or by dots, or that it is done: meanwhile nothing but to stop can be asked.
-    fn looks(&mut self, _on: bool) {}
+    /// Told how a camera looks into what is suddenly off, in the dark or by dots: meanwhile nothing but to stop can be asked.
+    fn looks(&mut self, _look: Look) {}
 
     /// Whether anything may still be asked; otherwise a lap that is stopped, or that a fault ended, is over.
     fn is_there(&self) -> bool;

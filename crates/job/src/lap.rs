@@ -1,6 +1,6 @@
 //! A lap that no camera follows. Somebody at the wall may pause, stop, hurry or slow it, and let it go on.
 
-use tracelight_session::{Event, Refused, Session, Snapshot, State};
+use tracelight_session::{Event, Refused, Request, Session, Snapshot, State};
 use tracelight_sim::{Run, SimulatedRig, Tick, job_of};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
@@ -15,7 +15,7 @@ use crate::looped::Looped;
 /// A lap, and what became of it.
 pub(crate) struct RanLap {
     pub(crate) run: Run,
-    /// Why it ended if its rig lost power.
+    /// Why it ended, if not at its end or by the user: a fault, or lost power.
     pub(crate) failure: Option<Failure>,
     /// Pauses and other speeds.
     pub(crate) notes: Vec<String>,
@@ -29,8 +29,9 @@ pub(crate) fn run_lap(
     (keep, hands): (&mut dyn Keep, &mut dyn Hands),
     task: Task<'_>,
 ) -> Result<RanLap, Failure> {
-    let mut lap = Lap { plan, task, run: Run::default(), rests: 0, diary: Diary::default() };
+    let mut lap = Lap { plan, dry, task, run: Run::default(), rests: 0, diary: Diary::default() };
     let ended = drive_framed(rig, (job_of(plan, dry), &mut lap), frame, (keep, hands), task)?;
+    lap.diary.end(&ended.now);
     Ok(RanLap {
         run: lap.run,
         failure: ended.failure.or(ended.fault.map(Failure::fault)),
@@ -40,6 +41,7 @@ pub(crate) fn run_lap(
 
 struct Lap<'a> {
     plan: &'a Plan,
+    dry: bool,
     task: Task<'a>,
     run: Run,
     /// Ticks since it rests.
@@ -50,8 +52,7 @@ struct Lap<'a> {
 impl Course for Lap<'_> {
     fn keep(&mut self, keep: &mut dyn Keep, tick: Tick, now: &Snapshot, _: u32) -> Result<(), Failure> {
         keep.tick(self.plan, &tick)?;
-        let is_resting =
-            matches!(now.state, State::Paused | State::Stopped | State::Armed | State::Fault) && !tick.light;
+        let is_resting = !now.state.is_on() && !tick.light;
         self.rests = if is_resting { self.rests.saturating_add(1) } else { 0 };
         if self.rests <= REST_TICKS {
             self.run.ticks.push(tick);
@@ -76,6 +77,12 @@ impl Course for Lap<'_> {
         _: Task<'_>,
     ) -> Result<(), Refused> {
         match ask {
+            // it was stopped, or a fault came, before it began
+            Ask::Request(Request::Resume)
+                if wall.state() == State::Armed && wall.snapshot().plan_ticks == 0 =>
+            {
+                wall.request(Request::Next(job_of(self.plan, self.dry)))
+            }
             Ask::Request(request) => wall.request(request),
             // strokes come one after the other by themselves
             Ask::Step(_) => Ok(()),

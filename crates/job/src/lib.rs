@@ -30,10 +30,11 @@ mod remainder;
 mod request;
 mod seen;
 mod steps;
+mod stretch;
 mod wall;
 mod watched;
 
-pub use hands::{Ask, Hands, Step};
+pub use hands::{Ask, Hands, Look, Step};
 pub use keep::{Keep, KeepNothing};
 pub use points::PointDone;
 pub use prepared::{Prepared, Ran, prepare};

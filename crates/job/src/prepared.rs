@@ -318,6 +318,8 @@ impl Prepared {
         let RunRequest { laps: wanted, seed, dry, powered_up } = self.how;
         let plan = &self.schedule.plan;
         let mut laps: Vec<Run> = Vec::new();
+        // what happened in them
+        let mut told: Vec<String> = Vec::new();
         let mut learned = Learned { rig: self.driving.rig.clone(), taken: false, notes: Vec::new() };
         if wanted > 1 && self.driving.rig.drive.kind.is_open_loop() {
             let note =
@@ -339,18 +341,19 @@ impl Prepared {
                 let frame = frame_of(frame, &self.driving, dry)?;
                 let drawn = (plan, frame.as_ref());
                 let done = run_lap(&mut rig, drawn, dry, (keep, hands), task)?;
-                learned.notes.extend(done.notes);
-                learned.notes.extend(lost_note(&learned.rig, self.driving.pose.distance_m, rig.lost_steps()));
+                told.extend(done.notes);
+                told.extend(lost_note(&learned.rig, self.driving.pose.distance_m, rig.lost_steps()));
                 laps.push(done.run);
                 failure = done.failure;
                 continue;
             };
             let mut done = self.watched_lap(looks, &learned.rig, (keep, hands), task)?;
-            learned.notes.append(&mut done.notes);
+            told.append(&mut done.notes);
             laps.push(std::mem::take(&mut done.run));
             failure = done.failure.take();
             watched = Some(done);
         }
+        learned.notes.append(&mut told);
         let last = laps.pop().unwrap_or_default();
         // both ways above put up a `SimulatedRig`
         Ok(Laps { earlier: laps, last, learned, watched, failure, simulated: true })
@@ -407,7 +410,7 @@ struct Laps {
     learned: Learned,
     /// What a camera saw of the last one, and the plan that it came to.
     watched: Option<WatchedRun>,
-    /// Why the last one ended before its time, if neither the rig's fault nor the user ended it.
+    /// Why the last one ended before its time, if the user did not end it.
     failure: Option<Failure>,
     /// By equations of a head.
     simulated: bool,

@@ -10,7 +10,7 @@ use tracelight_eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed}
 use tracelight_eye::{Driven as _, Eye, Looks, PATIENCE_TICKS, Shot};
 use tracelight_pipeline::refused;
 use tracelight_rig::{PanTilt, TICK_F64_S};
-use tracelight_session::{Refused, Request, State, When};
+use tracelight_session::{Refused, Request, State, When, seconds};
 use tracelight_stroke::{Drawing, Stroke};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::{Plan, plan};
@@ -32,7 +32,7 @@ const DOT_SHARE: f64 = 0.8;
 impl Watched<'_> {
     /// Looks into what is off. Why the head must be found again; nothing if the job goes on.
     pub(crate) fn look_after(&mut self, suspicion: Suspicion) -> Result<Option<Why>, Failure> {
-        let Some(suspicion) = self.dotted(suspicion) else { return Ok(None) };
+        let Some(suspicion) = self.dotted(suspicion)? else { return Ok(None) };
         let words = self.look_into(suspicion)?;
         Ok(words.map(|words| Why { words, seen_off: matches!(suspicion, Suspicion::Off(_)) }))
     }
@@ -46,21 +46,23 @@ impl Watched<'_> {
     }
 
     /// What a jolt came to: the head is darkened, and one dot tells where it points. Nothing if that is where it should be, or nobody sees.
-    fn dotted(&mut self, suspicion: Suspicion) -> Option<Suspicion> {
-        let Suspicion::Jolt(_) = suspicion else { return Some(suspicion) };
+    fn dotted(&mut self, suspicion: Suspicion) -> Result<Option<Suspicion>, Failure> {
+        let Suspicion::Jolt(_) = suspicion else { return Ok(Some(suspicion)) };
         let is_lit = self.joined.points.get(self.plan_tick as usize).is_some_and(|point| point.lit);
         let is_blind = self.follower.blind().is_some();
         // somebody who leans on it all day is the interlock's to judge
         if is_blind || !is_lit || self.job.dry || self.figures.checks >= MOST_CHECKS {
-            return None;
+            return Ok(None);
         }
         self.pause();
         let before = self.follower.marks.len();
         let images_s = 2.0 * self.follower.period_s() + f64::from(DOT_TICKS) * TICK_F64_S;
         let most_s = DOT_SHARE * self.driving.rig.light.standing_s;
         let dot_ticks = (images_s.min(most_s) / TICK_F64_S).round() as u16;
-        if self.is_over() || self.session.request(Request::Mark(dot_ticks)).is_err() {
-            return None;
+        self.looking.stop.check()?;
+        // after a stop it may be asked for no dot: then the wall is looked at
+        if self.session.request(Request::Mark(dot_ticks)).is_err() {
+            return Ok(Some(suspicion));
         }
         let mut off = None;
         self.dots = true;
@@ -75,7 +77,8 @@ impl Watched<'_> {
         self.figures.checks += 1;
         // a dot's image is of no stroke
         let seen = self.follower.marks.split_off(before.min(self.follower.marks.len()));
-        off.or(seen.is_empty().then_some(suspicion))
+        self.looking.stop.check()?;
+        Ok(off.or(seen.is_empty().then_some(suspicion)))
     }
 
     /// Darkens, and looks what became of the camera. Why the head must be found again, if the camera stands where it stood.
@@ -148,7 +151,7 @@ impl Watched<'_> {
 
     /// Time since power-up, s.
     pub(crate) fn now_s(&self) -> f64 {
-        f64::from(self.session.told().tick) * TICK_F64_S
+        seconds(self.now)
     }
 
     fn recovered(&mut self, t_s: f64, what: String, dots: usize) {
@@ -206,6 +209,7 @@ impl Watched<'_> {
             "{why}: the head was found anew by {} dots, its spot had moved by {moved:.1} mm",
             found.dots
         );
+        self.looking.stop.check()?;
         self.recovered(began_s, what, found.dots);
         plan(left, &self.driving.machine, &self.driving.request).map_err(refused)
     }
@@ -235,6 +239,9 @@ impl Watched<'_> {
         if self.session.state() == State::Fault {
             self.session.request(Request::Clear).map_err(refused)?;
             self.step();
+        }
+        if self.session.state() == State::Armed {
+            self.session.request(Request::Disarm).map_err(refused)?;
         }
         self.trimmer = None;
         self.session.request(Request::Park).map_err(refused)?;

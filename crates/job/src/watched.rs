@@ -3,17 +3,17 @@
 
 use tracelight_aim::Correction;
 use tracelight_eye::figures::{FollowFigures, SeenOff, TrimFigures};
-use tracelight_eye::follow::{Blind, Follower, Suspicion, strayed_rad};
+use tracelight_eye::follow::{Blind, Follower, Suspicion};
 use tracelight_eye::painted::Painted;
 use tracelight_eye::power::{PowerWatch, lost_power};
 use tracelight_eye::seen::{SeenLight, SeenMark};
 use tracelight_eye::trim::Trimmer;
 use tracelight_eye::trouble::TroubleAt;
 use tracelight_pipeline::Driving;
-use tracelight_rig::{Darkness, Fault, PanTilt, Phase, TICK_F64_S, Telemetry};
+use tracelight_rig::{Fault, PanTilt, TICK_F64_S, Telemetry};
 use tracelight_rigfile::camera::KnownCamera;
-use tracelight_session::{Job, Request, Session, State};
-use tracelight_sim::{AFTERMATH_TICKS, Room, Run, Simulated as _, Tick, job_of, tick, tick_trimmed};
+use tracelight_session::{Request, Session};
+use tracelight_sim::{Room, Run, Tick, tick, tick_trimmed};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Stop, Task};
 use tracelight_trajectory::Plan;
@@ -44,7 +44,7 @@ pub(crate) struct WatchedRun {
     pub(crate) seen: SeenLight,
     /// Pauses and other speeds.
     pub(crate) notes: Vec<String>,
-    /// Why it ended before its time, if neither the rig nor the user ended it.
+    /// Why it ended before its time, if the user did not end it.
     pub(crate) failure: Option<Failure>,
 }
 
@@ -57,12 +57,19 @@ const MOST_JUMP_RAD: f64 = 0.06;
 pub(crate) const MOST_RECOVERIES: usize = 6;
 
 /// Why a stretch of a run ended.
-enum Ended {
+pub(crate) enum Ended {
     Done,
     Fault(Fault),
     Suspect(Suspicion),
     Stopped,
     GivenUp,
+}
+
+/// What is to be looked into once somebody who holds the job lets it go on.
+#[derive(Clone, Copy)]
+pub(crate) enum Due {
+    Fault(Fault),
+    Suspicion(Suspicion),
 }
 
 /// A camera that looks into what is off, while somebody may stand at the wall.
@@ -74,6 +81,8 @@ pub(crate) struct Looking {
     pub(crate) stop: Stop,
     /// Whoever stopped it has armed since, and wants it to go on.
     pub(crate) goes_on: bool,
+    /// Speed of the plan's clock that is asked for; meanwhile it is the plan's own.
+    pub(crate) speed: f32,
 }
 
 /// Why a head must be found again.
@@ -90,13 +99,18 @@ pub(crate) struct Watched<'a> {
     /// Trims the plan that is followed; `None` while there is none.
     pub(crate) trimmer: Option<Trimmer>,
     /// Number of the first stroke of that plan.
-    first: u32,
+    pub(crate) first: u32,
     /// Who stands at the wall.
     pub(crate) hands: &'a mut dyn Hands,
     pub(crate) diary: Diary,
     pub(crate) looking: Looking,
-    /// Somebody has paused or stopped it, and has not let it go on.
-    held: bool,
+    /// Somebody has paused or stopped it, or a fault has, and nobody has let it go on.
+    pub(crate) held: bool,
+    pub(crate) due: Option<Due>,
+    /// Who holds it has armed, and wants it to go on where it cannot by itself.
+    pub(crate) goes_on: bool,
+    /// Tick of the rig, as long as that had power.
+    pub(crate) now: u32,
     /// Ticks since it rests.
     rests: u32,
     pub(crate) follower: Follower,
@@ -138,6 +152,9 @@ pub(crate) fn run_watched<'a>(
         diary: Diary::default(),
         looking: Looking::default(),
         held: false,
+        due: None,
+        goes_on: false,
+        now: 0,
         rests: 0,
         follower: Follower::new(&job.seen.followed, Some(painted)),
         driving: job.driving.clone(),
@@ -166,10 +183,12 @@ pub(crate) fn run_watched<'a>(
     let failure = watched.power_lost().or(failure);
     watched.failed.take().map_or(Ok(()), Err)?;
     watched.tell();
+    let fault = watched.session.told().fault.map(Failure::fault);
+    watched.diary.end(&watched.session.snapshot());
     let Watched { run, joined, figures, follower, diary, .. } = watched;
     let painting = follower.watch.painted.as_ref().and_then(Painted::picture);
     let seen = SeenLight { marks: follower.marks, painting };
-    Ok(WatchedRun { run, plan: joined, figures, seen, notes: diary.notes, failure })
+    Ok(WatchedRun { run, plan: joined, figures, seen, notes: diary.notes, failure: failure.or(fault) })
 }
 
 impl Watched<'_> {
@@ -177,7 +196,9 @@ impl Watched<'_> {
     fn all(&mut self, mut plan: Plan, mut drawing: Drawing) -> Result<(), Failure> {
         loop {
             let Some((why, first, left)) = self.one(&plan, &drawing)? else { return Ok(()) };
-            let next = self.looked(|watched| watched.found_again(&why, &left))?;
+            let next = self.looked(|watched| watched.found_again(&why, &left));
+            self.look(false);
+            let next = next?;
             self.first += first;
             self.base = join(&mut self.joined, self.plan_tick, &next, self.first);
             self.plan_tick = self.base;
@@ -191,15 +212,24 @@ impl Watched<'_> {
         loop {
             let suspicion = match self.follow(plan)? {
                 Ended::Fault(fault) => {
+                    self.look(true);
                     let why = Why { words: format!("fault {}", fault.code()), seen_off: false };
-                    return Ok(left(plan, drawing, self.rewound()).map(|(first, left)| (why, first, left)));
+                    let rest = left(plan, drawing, self.rewound());
+                    if rest.is_none() {
+                        self.look(false);
+                    }
+                    return Ok(rest.map(|(first, left)| (why, first, left)));
                 }
                 Ended::Done | Ended::Stopped | Ended::GivenUp => return Ok(None),
                 Ended::Suspect(suspicion) => suspicion,
             };
-            let Some(why) = self.looked(|watched| watched.look_after(suspicion))? else { continue };
+            let looked = self.looked(|watched| watched.look_after(suspicion));
             // what was all but finished is finished
-            if let Some((first, left)) = left(plan, drawing, self.rewound()) {
+            let rest = left(plan, drawing, self.rewound());
+            if let (Ok(Some(_)), None) | (Ok(None) | Err(_), _) = (&looked, &rest) {
+                self.look(false);
+            }
+            if let (Some(why), Some((first, left))) = (looked?, rest) {
                 return Ok(Some((why, first, left)));
             }
         }
@@ -217,20 +247,21 @@ impl Watched<'_> {
         }
     }
 
-    /// Has the camera look into what is off, until it has, however often somebody stops that on its way and has it go on.
+    /// Has the camera look into what is off, until it has, however often somebody stops that on its way and has it go on. It looks on until
+    /// [`look`](Self::look) ends that.
     fn looked<T>(&mut self, mut look: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Failure> {
         self.look(true);
-        let found = loop {
+        loop {
             let found = look(self);
+            // its images were for somebody else
+            self.follower.hear_again();
             if !self.is_to_look_again() {
-                break found;
+                return found;
             }
-        };
-        self.look(false);
-        found
+        }
     }
 
-    fn can_recover(&self) -> bool {
+    pub(crate) fn can_recover(&self) -> bool {
         let may_look = self.follower.blind().is_none() && !self.job.seen.open && !self.job.dry;
         may_look && self.figures.recoveries.len() < MOST_RECOVERIES && self.jumped_rad() < MOST_JUMP_RAD
     }
@@ -264,76 +295,6 @@ impl Watched<'_> {
         good.map_or(0, |tick| tick - self.base).min(self.plan_tick - self.base)
     }
 
-    /// Begins a plan, or goes on with it, unless somebody holds it; who started the job has done both acts.
-    fn go(&mut self, plan: &Plan) -> Result<(), Failure> {
-        let dry = self.job.dry;
-        let arms = match self.session.state() {
-            State::Ready | State::Done | State::Stopped => !dry,
-            _ => false,
-        };
-        let request = match self.session.state() {
-            _ if self.held => return Ok(()),
-            State::Ready | State::Done => {
-                self.trimmer = Some(Trimmer::new());
-                let of = self.job.drawing.strokes.len() as u32;
-                Request::Trace(Job { first: self.first, of, ..job_of(plan, dry) })
-            }
-            State::Paused | State::Stopped => Request::Resume,
-            _ => return Ok(()),
-        };
-        let armed = if arms { self.session.request(Request::Arm) } else { Ok(()) };
-        armed
-            .and_then(|()| self.session.request(request))
-            .map_err(|why| Failure::failed("session", why.to_string()))
-    }
-
-    /// Follows a plan until something happens.
-    fn follow(&mut self, plan: &Plan) -> Result<Ended, Failure> {
-        self.go(plan)?;
-        let mut most = plan.points.len() + self.session.rig().patience_ticks();
-        let mut aftermath = AFTERMATH_TICKS;
-        let (mut traced, mut lit) = (false, false);
-        while most > 0 && aftermath > 0 {
-            let wanted = if self.job.seen.open { Correction::default() } else { self.follower.correction() };
-            self.trimmer.iter_mut().for_each(|trimmer| trimmer.wanted = wanted);
-            let (tick, suspicion) = self.step();
-            if self.is_over() {
-                let _ = self.session.request(Request::Stop);
-                self.rest(AFTERMATH_TICKS);
-                return Ok(Ended::Stopped);
-            }
-            let state = self.session.state();
-            self.held = !state.is_on();
-            match tick.telemetry.fault {
-                Some(fault) if may_be_found_again(fault) && self.can_recover() => {
-                    self.held = false;
-                    return Ok(Ended::Fault(fault));
-                }
-                None if state == State::Done => return Ok(Ended::Done),
-                _ => {}
-            }
-            if self.held {
-                aftermath -= u32::from(!self.is_attended());
-            } else {
-                most -= 1;
-            }
-            lit |= tick.telemetry.actuation.lights();
-            // what is armed anew on its way begins with a hold
-            let holds = traced && matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
-            // before the first light it may only wait until its encoders were seen to follow its motors
-            let waits = !lit && tick.telemetry.darkness.contains(Darkness::Untested);
-            // a gyroscope tells by itself whether the head stands where it stood
-            let judged = tick.telemetry.darkness.contains(Darkness::Jolted);
-            let held = (holds && !waits && !judged).then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
-            traced = tick.telemetry.phase == Phase::Tracing;
-            let suspicion = suspicion.or(held).filter(|_| !self.job.seen.open && state != State::Fault);
-            if let Some(suspicion) = suspicion {
-                return Ok(Ended::Suspect(suspicion));
-            }
-        }
-        Ok(Ended::GivenUp)
-    }
-
     /// One tick, watched and kept.
     pub(crate) fn step(&mut self) -> (Tick, Option<Suspicion>) {
         let mut tick = match &mut self.trimmer {
@@ -345,6 +306,7 @@ impl Watched<'_> {
         if self.unpowered {
             return (tick, None);
         }
+        self.now = tick.telemetry.tick;
         self.place(&mut tick);
         self.strike(&tick);
         let suspicion = self.follower.tick(self.session.rig_mut(), &tick);
@@ -357,7 +319,8 @@ impl Watched<'_> {
         }
         // a dot is not the drawing's
         let keeps = !self.dots || !tick.light;
-        let rests = !self.looking.on && !self.session.state().is_on() && !tick.light;
+        let waits = !self.looking.on || self.looking.stop.is_wanted();
+        let rests = waits && !self.session.state().is_on() && !tick.light;
         self.rests = if rests { self.rests.saturating_add(1) } else { 0 };
         if keeps && self.rests <= KEPT_TICKS {
             self.run.ticks.push(tick);
@@ -458,7 +421,7 @@ impl Watched<'_> {
 }
 
 /// Whether a fault is one after which a head only needs to be found again.
-const fn may_be_found_again(fault: Fault) -> bool {
+pub(crate) const fn may_be_found_again(fault: Fault) -> bool {
     matches!(
         fault,
         Fault::EncoderJumped

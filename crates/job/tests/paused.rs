@@ -11,7 +11,7 @@ mod ink;
 use tracelight_aim::HeadPose;
 use tracelight_eye::room::SimulatedEye;
 use tracelight_job::{
-    Ask, Hands, Keep, Prepared, Ran, Request as Asks, RunRequest, Scene, Wall, prepare_wall,
+    Ask, Hands, Keep, Look, Prepared, Ran, Request as Asks, RunRequest, Scene, Wall, prepare_wall,
 };
 use tracelight_picture::{Source, decode};
 use tracelight_pipeline::{Asked, Driving, Placing, Tracing, request_of};
@@ -208,6 +208,71 @@ fn what_a_camera_follows_is_held_anywhere_and_goes_on_where_its_light_was() {
     check_holds(8);
 }
 
+/// A run of a job with which something goes wrong on its way, to its end.
+fn run_by(job: &Prepared, mut keep: Light, hands: &mut dyn Hands, task: Task<'_>) -> Light {
+    let ran = job.run_by_hand(&mut keep, hands, task).unwrap();
+    assert!(ran.failure.is_none() && ran.finished, "{:?} {:?}", ran.failure, ran.notes);
+    let follow = ran.eye.as_ref().unwrap().follow.as_ref().unwrap();
+    assert!(!follow.recoveries.is_empty(), "{:?}", follow.remarks);
+    keep
+}
+
+/// Somebody who stops a job of which an image under way shows that something is off, and has it go on after a while.
+#[derive(Default)]
+struct Quick {
+    at: u32,
+    since: Option<u32>,
+    lit: u32,
+}
+
+impl Hands for Quick {
+    fn tick(&mut self, now: &Snapshot) -> Option<Ask> {
+        if now.tick == self.at {
+            self.since = Some(0);
+            return Some(Ask::Request(Request::Stop));
+        }
+        let since = self.since.as_mut()?;
+        *since += 1;
+        self.lit += u32::from((2..3000).contains(since) && now.gate);
+        match (*since, now.state) {
+            (..3000, _) => None,
+            (_, State::Armed) => {
+                self.since = None;
+                Some(Ask::Request(Request::Resume))
+            }
+            (since, _) => since.is_multiple_of(500).then_some(Ask::Request(Request::Arm)),
+        }
+    }
+
+    fn event(&mut self, _: &Event) {}
+
+    fn refused(&mut self, _: &Refused) {}
+
+    fn is_there(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn a_job_that_was_stopped_lets_out_no_dots_before_somebody_arms() {
+    let stop = Stop::default();
+    let task = Task { progress: &NoProgress, stop: &stop };
+    let job = prepared(PICTURES[1], (5, &["head-bump=0.2@2"]), task);
+    let (mut looked, mut light) = (0, Light { held: u32::MAX, ..Light::default() });
+    let _ = job.run_by_hand(&mut light, &mut Quick { at: u32::MAX, ..Quick::default() }, task).unwrap();
+    let struck = light.ticks.iter().position(|(plan_tick, gate)| *plan_tick >= 2000 && *gate).unwrap();
+    for later in (10..250).step_by(16) {
+        let mut hands = Quick { at: struck as u32 + later, ..Quick::default() };
+        let mut keep = Light { held: u32::MAX, ..Light::default() };
+        let ran = job.run_by_hand(&mut keep, &mut hands, task).unwrap();
+        assert!(ran.failure.is_none() && ran.finished, "{later}: {:?} {:?}", ran.failure, ran.notes);
+        assert_eq!(hands.lit, 0, "{later}: light while it was stopped");
+        let follow = ran.eye.as_ref().unwrap().follow.as_ref().unwrap();
+        looked += u32::from(!follow.recoveries.is_empty());
+    }
+    assert!(looked > 10, "it was looked into only {looked} times");
+}
+
 /// Somebody who stops the camera's looking into what is off each time, and has it go on.
 #[derive(Default)]
 struct Impatient {
@@ -251,8 +316,13 @@ impl Hands for Impatient {
         self.refused.push(why.to_string());
     }
 
-    fn looks(&mut self, on: bool) {
-        self.looks = on.then_some(0);
+    fn looks(&mut self, look: Look) {
+        match look {
+            // in the end it has patience
+            Look::Begun => self.looks = (self.stopped < 2).then_some(0),
+            Look::Stopped => {}
+            Look::Over => self.looks = None,
+        }
     }
 
     fn is_there(&self) -> bool {
@@ -266,17 +336,22 @@ fn whoever_stops_a_camera_that_looks_for_the_head_may_have_it_go_on() {
     let task = Task { progress: &NoProgress, stop: &stop };
     for (number, trouble) in (0..).zip(["pan-slip=20@2", "head-bump=1@3", "camera-bump=6@2"]) {
         let job = prepared(PICTURES[1], (5, &[trouble]), task);
+        let alone = Light { held: u32::MAX, ..Light::default() };
+        let mut nobody = Impatient { stops_after: u32::MAX, ..Impatient::default() };
+        let alone = run_by(&job, alone, &mut nobody, task);
         for stops_after in [50, 400, 2000 + 700 * number, 6000] {
             let mut hands = Impatient { stops_after, ..Impatient::default() };
-            let mut keep = Light { held: u32::MAX, ..Light::default() };
-            let ran = job.run_by_hand(&mut keep, &mut hands, task).unwrap();
             let case = format!("{trouble} stopped {stops_after} ticks later");
-            assert!(ran.failure.is_none() && ran.finished, "{case}: {:?}", ran.failure);
-            let follow = ran.eye.as_ref().unwrap().follow.as_ref().unwrap();
-            assert!(!follow.recoveries.is_empty(), "{case}: {:?}", follow.remarks);
+            let light = Light { held: u32::MAX, ..Light::default() };
+            let light = run_by(&job, light, &mut hands, task);
+            assert!(stops_after > 400 || hands.stopped > 0, "{case}: nobody stopped anything");
+            assert!(light.off_mm < alone.off_mm + 1.0, "{case}: {} mm off, {}", light.off_mm, alone.off_mm);
             assert_eq!(hands.lit, 0, "{case}: light while it was stopped");
-            assert!(hands.refused.len() >= 2 * hands.stopped as usize, "{case}: {:?}", hands.refused);
-            println!("{case}: stopped {} times, {} found", hands.stopped, follow.recoveries.len());
+            assert!(hands.refused.len() >= hands.stopped as usize, "{case}: {:?}", hands.refused);
+            println!(
+                "{case}: stopped {} times, {:.2} mm off at most ({:.2})",
+                hands.stopped, light.off_mm, alone.off_mm
+            );
         }
     }
 }

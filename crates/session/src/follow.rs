@@ -48,7 +48,7 @@ impl<R: Rig> Session<R> {
                 self.send(Command::Disarm);
                 self.enter(State::Done);
             }
-            State::Paused if matches!(self.state, State::Pausing | State::Marking) => {
+            State::Paused if self.state == State::Pausing => {
                 self.since = tick;
                 self.enter(State::Paused);
             }
@@ -99,9 +99,10 @@ impl<R: Rig> Session<R> {
         // between two times it is dark, and waits
         let has_ended = self.running.as_ref().is_some_and(|running| running.ended.is_some());
         match self.state {
-            State::Unhomed | State::Homing => State::Ready,
+            // what was just told to forget may not have heard it yet
+            State::Unhomed | State::Homing if self.outbox.is_empty() => State::Ready,
             State::Armed if self.armed_in == State::Unhomed => State::Ready,
-            State::Marking if self.waited() > self.mark_ticks || phase != Phase::Dark => State::Paused,
+            State::Marking if self.is_marked() || phase != Phase::Dark => State::Paused,
             State::Fault if self.has_begun() => State::Stopped,
             State::Fault => State::Ready,
             State::Armed if self.waited() >= ARMED_TICKS => self.armed_in,
@@ -127,6 +128,10 @@ impl<R: Rig> Session<R> {
             State::Parking if self.is_parked() => State::Ready,
             state => state,
         }
+    }
+
+    fn is_marked(&self) -> bool {
+        self.told.tick.wrapping_sub(self.mark_ends).cast_signed() > 0
     }
 
     fn has_begun(&self) -> bool {

@@ -36,8 +36,8 @@ pub struct Session<R> {
     pub(crate) speed: f32,
     pub(crate) told: Telemetry,
     pub(crate) outbox: Outbox,
-    /// How long the dot is that is let out, ticks.
-    pub(crate) mark_ticks: u32,
+    /// Tick in which the dot that is let out is over.
+    pub(crate) mark_ends: u32,
     pub(crate) events: VecDeque<Event>,
 }
 
@@ -55,7 +55,7 @@ impl<R: Rig> Session<R> {
             speed: 1.0,
             told: Telemetry::default(),
             outbox: Outbox::default(),
-            mark_ticks: 0,
+            mark_ends: 0,
             events: VecDeque::new(),
         };
         session.send(Command::Disarm);
@@ -85,6 +85,11 @@ impl<R: Rig> Session<R> {
     /// The next event that was not fetched yet.
     pub fn event(&mut self) -> Option<Event> {
         self.events.pop_front()
+    }
+
+    /// Whether a job that was paused may go on without arming anew.
+    pub fn may_resume(&self) -> bool {
+        self.state == State::Paused && self.check_resume().is_ok()
     }
 
     /// Where it stands.
@@ -124,13 +129,7 @@ impl<R: Rig> Session<R> {
             (Request::Stop, _) => self.stop(),
             (Request::Speed(rate), _) => self.set_speed(rate)?,
             (Request::Home(counts), Unhomed | Homing | Ready | Done) => self.home(counts)?,
-            (Request::Unhome, state) if state != State::Lost => {
-                (self.running, self.next) = (None, None);
-                self.send(Command::Unhome);
-                if state != Fault {
-                    self.enter(Unhomed);
-                }
-            }
+            (Request::Unhome, state) if state != State::Lost => self.unhome(),
             (Request::Arm, Unhomed | Ready | Done | Stopped | Paused) => {
                 self.armed_in = self.state;
                 self.since = self.told.tick;
@@ -138,7 +137,11 @@ impl<R: Rig> Session<R> {
             }
             (Request::Disarm, Armed) => self.let_arming_go(),
             (Request::Seek, Armed) if self.armed_in == Unhomed => self.enter(Homing),
-            (Request::Jog(job), Unhomed | Homing | Ready | Done) => self.jog(job)?,
+            (Request::Jog(job), Unhomed | Homing | Ready | Done)
+                if self.state != Homing || self.running.is_none() =>
+            {
+                self.jog(job)?;
+            }
             (Request::Trace(job), Ready | Done | Armed) if self.state != Armed || self.may_begin() => {
                 self.begin(job)?;
             }
@@ -171,12 +174,7 @@ impl<R: Rig> Session<R> {
                 self.enter(Pausing);
             }
             (Request::Pause(When::AtOnce), Pausing) => self.send(Command::Disarm),
-            (Request::Clear, Fault) => {
-                let acknowledges = self.told.fault_number;
-                [Command::KeepAlive, Command::Arm { acknowledges }, Command::Disarm]
-                    .into_iter()
-                    .for_each(|command| self.send(command));
-            }
+            (Request::Clear, Fault) => self.clear(),
             (Request::Park, Unhomed | Homing | Ready | Done | Stopped | Paused) => self.park(),
             (request, state) => {
                 return Err(Refused::State { request: request.name(), state, advice: advice(state) });
@@ -324,12 +322,27 @@ impl<R: Rig> Session<R> {
             if self.running.as_ref().is_none_or(|running| running.dry) {
                 return Err(Refused::NotArmed);
             }
-            self.mark_ticks = u32::from(ticks);
-            self.since = self.told.tick;
+            // the pause it is let out in is no longer by that
+            self.mark_ends = self.told.tick.wrapping_add(u32::from(ticks));
             self.enter(State::Marking);
         }
         self.send(Command::Point(ticks));
         Ok(())
+    }
+
+    fn unhome(&mut self) {
+        (self.running, self.next) = (None, None);
+        self.send(Command::Unhome);
+        if self.state != State::Fault {
+            self.enter(State::Unhomed);
+        }
+    }
+
+    fn clear(&mut self) {
+        let acknowledges = self.told.fault_number;
+        [Command::KeepAlive, Command::Arm { acknowledges }, Command::Disarm]
+            .into_iter()
+            .for_each(|command| self.send(command));
     }
 
     /// Turns the head in the dark, from where it rests; of one that is not homed nobody knows where that is but by what it was told before.

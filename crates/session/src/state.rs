@@ -23,10 +23,10 @@ pub const ATTENDED_TICKS: u32 = 600_000;
 ///  Unhomed ◄── Arm ──► Armed ── Seek ──► Homing ── Home ──► Ready        Paused ── Mark ──► Marking ── its end ──► Paused
 ///     ▲                                     │
 ///     └──────────────── Stop ───────────────┘
-///                                                    Unhomed, Ready, Done ── Jog ──► Jogging ── its end ──► Unhomed, Ready
+///                                                    Unhomed, Ready, Done ── Jog ──► Jogging ── its end, Stop ──► Unhomed, Ready
 /// ```
 ///
-/// A job that is done again and again is `Stepping`, `Pointing` or `Framing` where another one is `Tracing`; `Next` parks it and begins another one. A dry job needs no arming: it goes from `Ready`, `Done`, `Stopped` or `Paused` to `Tracing`. `Lost` is entered from anywhere, and never left.
+/// A job that is done again and again is `Stepping`, `Pointing` or `Framing` where another one is `Tracing`; `Next` parks it and begins another one. A dry job needs no arming: it goes from `Ready`, `Done`, `Stopped` or `Paused` to `Tracing`. `Unhome` leads from anywhere to `Unhomed`, `Park` also from there and from `Homing`; `Disarm` and `Stop` end a dot. `Lost` is entered from anywhere, and never left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum State {
     /// The rig does not know where it points.

@@ -334,7 +334,7 @@ pub fn arm(rig: &mut impl Simulated) -> bool {
 }
 
 /// Disarms a rig and lets ticks pass until its gate is shut, one at most, which are kept. Whoever stops a run does so before he goes.
-pub fn darken<R: Simulated>(rig: &mut R, mut keep: impl FnMut(Tick)) {
+fn darken<R: Simulated>(rig: &mut R, mut keep: impl FnMut(Tick)) {
     let _ = rig.send(Command::Disarm);
     if rig.told().actuation.lights() {
         keep(rig.step());

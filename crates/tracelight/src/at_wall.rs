@@ -3,7 +3,7 @@
 use std::io::Write as _;
 
 use serde_json::{Value, json};
-use tracelight_job::{Ask, Hands, Step};
+use tracelight_job::{Ask, Hands, Look, Step};
 use tracelight_pipeline::{Check, point_json, point_words};
 use tracelight_rig::TICK_F64_S;
 use tracelight_session::{
@@ -42,6 +42,10 @@ pub(crate) struct AtWall<'a> {
     framing: bool,
     /// A camera looks into what is off.
     looks: bool,
+    /// A key has armed it once: before, the program arms for whoever started it.
+    arms: bool,
+    /// The last key paused it at once.
+    at_once: bool,
     /// After so many ticks on one stroke or point the next one follows.
     each_ticks: Option<u32>,
     /// Tick since which it is on one.
@@ -61,8 +65,22 @@ impl<'a> AtWall<'a> {
         let framing = args.frame.is_some();
         let each_ticks = args.each.map(|time_s| (time_s / TICK_F64_S) as u32);
         let (events, on_it_since) = (args.events, None);
-        let (points, looks) = (false, false);
-        Some(Self { task, stop, clock, keys, events, steps, points, framing, looks, each_ticks, on_it_since })
+        let (points, looks, arms, at_once) = (false, false, false, false);
+        Some(Self {
+            task,
+            stop,
+            clock,
+            keys,
+            events,
+            steps,
+            points,
+            framing,
+            looks,
+            arms,
+            at_once,
+            each_ticks,
+            on_it_since,
+        })
     }
 
     fn help(&self) {
@@ -90,6 +108,7 @@ impl<'a> AtWall<'a> {
             Key::Space | Key::Enter => Some(Request::Resume),
             Key::Escape => Some(Request::Stop),
             // the first darkens, the second ends
+            Key::Interrupt if is_on && self.looks => Some(Request::Stop),
             Key::Interrupt if is_on => Some(Request::Pause(When::AtOnce)),
             Key::Interrupt | Key::Char('q') => {
                 self.stop.want();
@@ -156,6 +175,8 @@ impl Hands for AtWall<'_> {
             return Some(Ask::Step(step));
         }
         let request = self.meaning(key, now)?;
+        self.arms |= request == Request::Arm;
+        self.at_once = request == Request::Pause(When::AtOnce);
         if let Request::Speed(speed) = request {
             self.task.say(&format!("speed {:.0} %", 100.0 * speed));
         }
@@ -175,11 +196,17 @@ impl Hands for AtWall<'_> {
         }
     }
 
-    fn looks(&mut self, on: bool) {
-        self.looks = on;
-        self.print(&json!({"event": "looks", "on": on}));
-        if on && self.keys.is_some() {
-            self.task.say("something is off: dark, and the camera looks into it");
+    fn looks(&mut self, look: Look) {
+        self.looks = look != Look::Over;
+        self.print(&json!({"event": "looks", "state": look.name()}));
+        if self.keys.is_some() && !self.stop.is_wanted() {
+            self.task.say(match look {
+                Look::Begun => {
+                    "something is off: the camera looks into it, in the dark and by dots; Esc stops that"
+                }
+                Look::Stopped => "stopped, dark: A arms, then Enter lets the camera begin again; Q ends",
+                Look::Over => "the camera is done",
+            });
         }
     }
 
@@ -193,8 +220,10 @@ impl Hands for AtWall<'_> {
         let words = match *event {
             // who starts the program has armed it
             Event::State { tick: 0, .. } => None,
-            // a pause of the camera's is nobody's to end
-            Event::State { to: State::Pausing | State::Paused, .. } if self.looks => None,
+            // what the camera has the head do is nobody's to go on with, and who ends it knows
+            Event::State { .. } | Event::Fault { .. } if self.looks || self.stop.is_wanted() => None,
+            Event::State { to: State::Armed, .. } if !self.arms => None,
+            Event::State { to: State::Pausing, .. } if self.at_once => None,
             Event::State { to, .. } => words(to).map(str::to_owned),
             Event::Stroke { stroke, of, .. } => {
                 (self.steps && !self.points).then(|| format!("stroke {} of {of}", stroke + 1))
@@ -204,6 +233,7 @@ impl Hands for AtWall<'_> {
                 Some(format!("fault {}: {} (C clears it)", fault.code(), fault.row().what))
             }
         };
+        self.arms &= !matches!(event, Event::State { to: State::Armed, .. });
         self.print(&event_json(event));
         if let Some(words) = words.filter(|_| self.keys.is_some()) {
             self.task.say(&words);

@@ -1,6 +1,6 @@
 //! How a head goes round of which nobody knows where it points: gently, a joint at a time, and back from whatever is in its way.
 
-use tracelight_rig::{Fault, Joint, PanTilt, Phase, Segment, Telemetry};
+use tracelight_rig::{Fault, Joint, PanTilt, Phase, Telemetry};
 use tracelight_session::{Job, Request, State};
 use tracelight_task::Failure;
 use tracelight_trajectory::turn;
@@ -11,8 +11,6 @@ use crate::homing::state::{BEFORE_STOP_RAD, Homing, REST_TICKS};
 /// Fastest and most sudden motion of a joint of which nobody knows where it is, rad/s and rad/s².
 const GENTLE_RAD_S: f64 = 1.5;
 const GENTLE_RAD_S2: f64 = 4.0;
-/// How far it may stray meanwhile, rad.
-const STRAY_RAD: f32 = 0.05;
 /// Most times that a joint comes up against something: it has two stops.
 const MOST_STOPS: usize = 8;
 /// Of how many strides on either joint a place is no other than one that was tried.
@@ -118,10 +116,7 @@ impl<D: Driven> Homing<'_, D> {
         let least = |limits: PanTilt<f64>| limits.pan.min(limits.tilt);
         let speed_rad_s = least(machine.speed_limit_rad_s).min(GENTLE_RAD_S);
         let acceleration_rad_s2 = least(machine.acceleration_limit_rad_s2).min(GENTLE_RAD_S2);
-        let turn = Segment {
-            tolerance_rad: PanTilt::new(STRAY_RAD, STRAY_RAD),
-            ..turn(from, to, (speed_rad_s, acceleration_rad_s2))
-        };
+        let turn = turn(from, to, (speed_rad_s, acceleration_rad_s2));
         self.begin()?;
         self.rig.ask(Request::Jog(Job { segments: vec![turn], ..Job::default() }))?;
         let most = 2 * u32::from(turn.ticks) + 5000;
