@@ -15,11 +15,11 @@ pub enum Ask {
 /// How a camera looks into what is suddenly off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
-    /// It begins, or begins again.
+    /// A look begins, or begins again.
     Begun,
     /// Somebody stopped it: it begins again once they have armed and let it go on.
     Stopped,
-    /// It is done, and the job goes on or ends.
+    /// A look is done, and the job goes on or ends.
     Over,
 }
 

@@ -397,7 +397,7 @@ impl Watched<'_> {
         self.remark_of(self.now_s(), &remark);
     }
 
-    /// The same of something that was then, s.
+    /// Likewise of something that was then, s.
     pub(crate) fn remark_of(&mut self, t_s: f64, remark: &str) {
         let remark = format!("after {t_s:.1} s: {remark}");
         self.task.say(&format!("note: {remark}"));
