@@ -98,8 +98,10 @@ const JOLT_TIMES: f64 = 1.5;
 /// of late: what was is forgotten by a share each so many ticks, in some ten seconds.
 const LATE_TICKS: u32 = 100;
 const LATE_FADES: f64 = 1e-2;
-/// and only after so many ticks of light is it known.
+/// and only after so many ticks of light is it known,
 const WATCHED_TICKS: u32 = 1000;
+/// and so many after a stop.
+const BEGUN_TICKS: u32 = 200;
 
 /// How far the joint that is further off is from its setpoint, rad.
 #[must_use]
@@ -133,6 +135,8 @@ pub struct Follower {
     /// Likewise of the last few ticks.
     now_strayed_rad: f64,
     watched_ticks: u32,
+    /// Ticks since the plan's clock last began to run.
+    traced_ticks: u32,
     lost: u32,
     lost_since_s: f64,
     /// Plan's clock when the spot was last seen where it should be.
@@ -166,6 +170,7 @@ impl Follower {
             strayed_rad: 0.0,
             now_strayed_rad: 0.0,
             watched_ticks: 0,
+            traced_ticks: 0,
             lost: 0,
             lost_since_s: 0.0,
             good_plan_tick: None,
@@ -264,13 +269,16 @@ impl Follower {
     /// Whether a joint strayed as it never did since it was first lit: encoders feel a bump before any image shows it.
     fn jolted(&mut self, telemetry: &Telemetry) -> Option<Suspicion> {
         if telemetry.phase != Phase::Tracing {
+            self.traced_ticks = 0;
             return None;
         }
+        self.traced_ticks = self.traced_ticks.saturating_add(1);
         if !telemetry.actuation.lights() {
             return None;
         }
         let off_rad = strayed_rad(telemetry);
-        let known = self.watched_ticks > WATCHED_TICKS;
+        // who begins again amid a stroke strays more than who is under way
+        let known = self.watched_ticks > WATCHED_TICKS && self.traced_ticks > BEGUN_TICKS;
         let is_jolt = known && off_rad > JOLT_RAD + JOLT_TIMES * self.strayed_rad;
         self.now_strayed_rad = self.now_strayed_rad.max(off_rad);
         self.watched_ticks = self.watched_ticks.saturating_add(1);

@@ -176,7 +176,10 @@ impl Watched<'_> {
         let driving = self.driving.clone();
         let stop = self.looking.stop.clone();
         let task = Task { stop: &stop, ..self.task };
-        let because = |e: Failure| Failure { message: format!("{why}; {}", e.message), ..e };
+        let because = |e: Failure| match stop.is_wanted() {
+            true => e,
+            false => Failure { message: format!("{why}; {}", e.message), ..e },
+        };
         let mut turned_rad = PanTilt::default();
         if !self.session.told().homed {
             let homed = home_again(&mut Aside(self), &camera, &driving, (timing, exposure_s), task);

@@ -11,6 +11,9 @@ use tracelight_trajectory::Plan;
 
 use crate::watched::{Due, Ended, Watched, may_be_found_again};
 
+/// Ticks since the plan's clock last began to run within which a hold is no jolt.
+const BEGUN_TICKS: u32 = 200;
+
 impl Watched<'_> {
     /// Begins a plan, or goes on with it; who started the job, or lets it go on, has done both acts. A head that is anywhere goes to where the plan begins.
     fn go(&mut self, plan: &Plan) -> Result<(), Failure> {
@@ -40,7 +43,7 @@ impl Watched<'_> {
         self.go(plan)?;
         let mut most = plan.points.len() + self.session.rig().patience_ticks();
         let mut aftermath = AFTERMATH_TICKS;
-        let (mut traced, mut lit) = (false, false);
+        let (mut traced_ticks, mut lit) = (0_u32, false);
         while most > 0 && aftermath > 0 {
             let wanted = if self.job.seen.open { Correction::default() } else { self.follower.correction() };
             self.trimmer.iter_mut().for_each(|trimmer| trimmer.wanted = wanted);
@@ -77,14 +80,15 @@ impl Watched<'_> {
             aftermath -= u32::from(self.held && !self.is_attended());
             most -= usize::from(!self.held && !self.is_attended());
             lit |= tick.telemetry.actuation.lights();
-            // what is armed anew on its way begins with a hold
-            let holds = traced && matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
+            // what is armed anew on its way begins with a hold, and often with another one soon after
+            let holds =
+                traced_ticks > BEGUN_TICKS && matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
             // before the first light it may only wait until its encoders were seen to follow its motors
             let waits = !lit && tick.telemetry.darkness.contains(Darkness::Untested);
             // a gyroscope tells by itself whether the head stands where it stood
             let judged = tick.telemetry.darkness.contains(Darkness::Jolted);
             let jolt = (holds && !waits && !judged).then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
-            traced = tick.telemetry.phase == Phase::Tracing;
+            traced_ticks = if tick.telemetry.phase == Phase::Tracing { traced_ticks + 1 } else { 0 };
             let suspicion = suspicion.or(jolt).filter(|_| !self.job.seen.open && state != State::Fault);
             match suspicion {
                 Some(suspicion) if self.held => {

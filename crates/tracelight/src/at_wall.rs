@@ -40,8 +40,8 @@ pub(crate) struct AtWall<'a> {
     points: bool,
     /// The frame is drawn.
     framing: bool,
-    /// A camera looks into what is off.
-    looks: bool,
+    /// How a camera looks into what is off, if it does.
+    look: Option<Look>,
     /// A key has armed it once: before, the program arms for whoever started it.
     arms: bool,
     /// The last key paused it at once.
@@ -65,7 +65,7 @@ impl<'a> AtWall<'a> {
         let framing = args.frame.is_some();
         let each_ticks = args.each.map(|time_s| (time_s / TICK_F64_S) as u32);
         let (events, on_it_since) = (args.events, None);
-        let (points, looks, arms, at_once) = (false, false, false, false);
+        let (points, look, arms, at_once) = (false, None, false, false);
         Some(Self {
             task,
             stop,
@@ -75,7 +75,7 @@ impl<'a> AtWall<'a> {
             steps,
             points,
             framing,
-            looks,
+            look,
             arms,
             at_once,
             each_ticks,
@@ -108,7 +108,7 @@ impl<'a> AtWall<'a> {
             Key::Space | Key::Enter => Some(Request::Resume),
             Key::Escape => Some(Request::Stop),
             // the first darkens, the second ends
-            Key::Interrupt if is_on && self.looks => Some(Request::Stop),
+            Key::Interrupt if self.look == Some(Look::Begun) => Some(Request::Stop),
             Key::Interrupt if is_on => Some(Request::Pause(When::AtOnce)),
             Key::Interrupt | Key::Char('q') => {
                 self.stop.want();
@@ -197,7 +197,7 @@ impl Hands for AtWall<'_> {
     }
 
     fn looks(&mut self, look: Look) {
-        self.looks = look != Look::Over;
+        self.look = Some(look).filter(|look| *look != Look::Over);
         self.print(&json!({"event": "looks", "state": look.name()}));
         if self.keys.is_some() && !self.stop.is_wanted() {
             self.task.say(match look {
@@ -205,7 +205,7 @@ impl Hands for AtWall<'_> {
                     "something is off: the camera looks into it, in the dark and by dots; Esc stops that"
                 }
                 Look::Stopped => "stopped, dark: A arms, then Enter lets the camera begin again; Q ends",
-                Look::Over => "the camera is done",
+                Look::Over => "the camera is done with it",
             });
         }
     }
@@ -221,7 +221,7 @@ impl Hands for AtWall<'_> {
             // who starts the program has armed it
             Event::State { tick: 0, .. } => None,
             // what the camera has the head do is nobody's to go on with, and who ends it knows
-            Event::State { .. } | Event::Fault { .. } if self.looks || self.stop.is_wanted() => None,
+            Event::State { .. } | Event::Fault { .. } if self.look.is_some() || self.stop.is_wanted() => None,
             Event::State { to: State::Armed, .. } if !self.arms => None,
             Event::State { to: State::Pausing, .. } if self.at_once => None,
             Event::State { to, .. } => words(to).map(str::to_owned),
