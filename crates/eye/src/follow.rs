@@ -101,7 +101,7 @@ const LATE_FADES: f64 = 1e-2;
 /// and only after so many ticks of light is it known,
 const WATCHED_TICKS: u32 = 1000;
 /// and so many after a stop.
-const BEGUN_TICKS: u32 = 800;
+const BEGUN_TICKS: u32 = 200;
 
 /// How far the joint that is further off is from its setpoint, rad.
 #[must_use]

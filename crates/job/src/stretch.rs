@@ -12,7 +12,7 @@ use tracelight_trajectory::Plan;
 use crate::watched::{Due, Ended, Watched, may_be_found_again};
 
 /// Ticks since the plan's clock last began to run within which a hold is no jolt.
-const BEGUN_TICKS: u32 = 800;
+const BEGUN_TICKS: u32 = 200;
 
 impl Watched<'_> {
     /// Begins a plan, or goes on with it; who started the job, or lets it go on, has done both acts. A head that is anywhere goes to where the plan begins.
