@@ -1,6 +1,6 @@
 //! A rig that a session has in hand, and a camera that looks at what it does.
 
-use tracelight_session::{Request, Session};
+use tracelight_session::{Refused, Request, Session};
 use tracelight_sim::{Simulated, Tick, tick};
 use tracelight_task::Failure;
 
@@ -54,8 +54,14 @@ pub trait Driven: Eye {
     /// # Errors
     /// `session`: why that is refused.
     fn ask(&mut self, request: Request) -> Result<(), Failure> {
-        self.session().request(request).map_err(|why| Failure::failed("session", why.to_string()))
+        self.session().request(request).map_err(refused)
     }
+}
+
+/// What a session refuses, as what ends a job.
+#[must_use]
+pub fn refused(why: Refused) -> Failure {
+    Failure::failed("session", why.to_string())
 }
 
 impl<R: Simulated + Eye> Driven for Session<R> {

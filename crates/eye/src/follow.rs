@@ -10,7 +10,7 @@ use tracelight_stroke::Point;
 
 use crate::painted::Painted;
 use crate::seen::SeenMark;
-use crate::spots::{History, KEPT_TICKS, Sight, Sighting, SpotWatch};
+use crate::spots::{History, Sight, Sighting, SpotWatch, forget};
 use crate::{Eye, Shot};
 
 /// What is known when it begins.
@@ -221,6 +221,12 @@ impl Follower {
         (self.heard_s, self.last) = (f64::INFINITY, None);
     }
 
+    /// Whether the plan's clock runs for so long already that what strays is no restart's: who begins again amid a stroke strays more than who is under way.
+    #[must_use]
+    pub const fn is_under_way(&self) -> bool {
+        self.traced_ticks > BEGUN_TICKS
+    }
+
     /// Why it sees nothing, if so.
     #[must_use]
     pub const fn blind(&self) -> Option<Blind> {
@@ -277,8 +283,7 @@ impl Follower {
             return None;
         }
         let off_rad = strayed_rad(telemetry);
-        // who begins again amid a stroke strays more than who is under way
-        let known = self.watched_ticks > WATCHED_TICKS && self.traced_ticks > BEGUN_TICKS;
+        let known = self.watched_ticks > WATCHED_TICKS && self.is_under_way();
         let is_jolt = known && off_rad > JOLT_RAD + JOLT_TIMES * self.strayed_rad;
         self.now_strayed_rad = self.now_strayed_rad.max(off_rad);
         self.watched_ticks = self.watched_ticks.saturating_add(1);
@@ -293,10 +298,7 @@ impl Follower {
     fn remember(&mut self, telemetry: &Telemetry, asked: Option<Point>) {
         self.now_s = f64::from(telemetry.tick) * TICK_F64_S;
         self.heard_s = self.heard_s.min(self.now_s);
-        if self.asked.len() > 2 * KEPT_TICKS {
-            self.asked.drain(..KEPT_TICKS);
-            self.first_tick = self.first_tick.wrapping_add(KEPT_TICKS as u32);
-        }
+        forget(&mut self.asked, &mut self.first_tick);
         if self.asked.is_empty() {
             (self.first_tick, self.heard_s, self.aged_s) = (telemetry.tick, self.now_s, self.now_s);
         }

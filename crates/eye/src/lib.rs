@@ -51,6 +51,6 @@ pub mod trim;
 pub mod trouble;
 pub mod wall;
 
-pub use driven::{Driven, Eye};
+pub use driven::{Driven, Eye, refused};
 pub use looks::{Looks, MOST_IMAGE_BYTES, PATIENCE_TICKS};
 pub use shot::{Shot, grey};

@@ -37,7 +37,15 @@ pub enum Light {
 const SLACK_S: f64 = 0.005;
 
 /// For so long at least what was is known, ticks: five minutes, longer than any image is on its way and any dots take.
-pub(crate) const KEPT_TICKS: usize = 300_000;
+const KEPT_TICKS: usize = 300_000;
+
+/// Forgets what is older than that of what is kept tick by tick from a first one on.
+pub(crate) fn forget<T>(ticks: &mut Vec<T>, first: &mut u32) {
+    if ticks.len() > 2 * KEPT_TICKS {
+        ticks.drain(..KEPT_TICKS);
+        *first = first.wrapping_add(KEPT_TICKS as u32);
+    }
+}
 
 impl History {
     /// Of a laser with that relay.
@@ -57,10 +65,7 @@ impl History {
         if self.ticks.is_empty() {
             self.first = telemetry.tick;
         }
-        if self.ticks.len() > 2 * KEPT_TICKS {
-            self.ticks.drain(..KEPT_TICKS);
-            self.first = self.first.wrapping_add(KEPT_TICKS as u32);
-        }
+        forget(&mut self.ticks, &mut self.first);
         self.ticks.push((telemetry.position_rad.map(f64::from), telemetry.actuation.lights()));
     }
 

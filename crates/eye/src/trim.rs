@@ -17,7 +17,8 @@ const SCALE_S: f64 = 5e-3;
 const MOST_OFFSET_RAD: f64 = 0.02;
 const MOST_SCALE: f64 = 0.02;
 
-/// Trims a plan's segments on their way.
+/// Trims a plan's segments on their way; at first by nothing.
+#[derive(Default)]
 pub struct Trimmer {
     /// What is to be trimmed from the next segment on, as slowly as that may change.
     pub wanted: Correction,
@@ -44,20 +45,7 @@ impl Trim for Trimmer {
     }
 }
 
-impl Default for Trimmer {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Trimmer {
-    /// Begins with nothing trimmed.
-    #[must_use]
-    pub const fn new() -> Self {
-        let none = Correction { offset_rad: PanTilt::new(0.0, 0.0), scale: PanTilt::new(0.0, 0.0) };
-        Self { wanted: none, trimmed: none, sent: Vec::new() }
-    }
-
     /// Where the joints were asked to be before it was trimmed, rad.
     #[must_use]
     pub fn untrimmed(&self, plan_tick: u32, setpoint: &PanTilt<Setpoint>) -> PanTilt<f64> {
@@ -158,7 +146,7 @@ mod tests {
     fn without_a_trim_segments_are_sent_as_they_are_and_not_too_early() {
         let segments = segments();
         let mut feeder = Feeder::new(&segments, false);
-        let (mut trimmer, mut wire) = (Trimmer::new(), Wire::default());
+        let (mut trimmer, mut wire) = (Trimmer::default(), Wire::default());
         feeder.feed_trimmed(&mut wire, 0, &mut trimmer);
         assert_eq!(sent(&wire), segments[..6]);
         (0..2000).for_each(|tick| feeder.feed_trimmed(&mut wire, tick, &mut trimmer));
@@ -171,7 +159,7 @@ mod tests {
     fn a_trim_comes_smoothly_and_is_known_afterwards() {
         let segments = segments();
         let mut feeder = Feeder::new(&segments, false);
-        let (mut trimmer, mut wire) = (Trimmer::new(), Wire::default());
+        let (mut trimmer, mut wire) = (Trimmer::default(), Wire::default());
         let wanted = Correction { offset_rad: PanTilt::new(1e-3, -1.0), scale: PanTilt::new(4e-3, 0.0) };
         trimmer.wanted = wanted;
         (0..2000).for_each(|tick| feeder.feed_trimmed(&mut wire, tick, &mut trimmer));
@@ -204,7 +192,7 @@ mod tests {
     fn a_dry_run_shuts_every_gate() {
         let segments = segments();
         let (mut feeder, mut wire) = (Feeder::new(&segments, true), Wire::default());
-        feeder.feed_trimmed(&mut wire, 0, &mut Trimmer::new());
+        feeder.feed_trimmed(&mut wire, 0, &mut Trimmer::default());
         assert!(sent(&wire).iter().all(|segment| !segment.gate));
     }
 }

@@ -1,7 +1,7 @@
 //! Ticks of a watched run that are not the drawing's: those of the dots by which its head is found again.
 
 use tracelight_eye::power::lost_power;
-use tracelight_eye::{Driven, Eye, Shot};
+use tracelight_eye::{Driven, Eye, Shot, refused};
 use tracelight_session::{Request, Session};
 use tracelight_sim::{Room, Tick, tick};
 use tracelight_task::Failure;
@@ -21,14 +21,11 @@ impl Driven for Aside<'_, '_> {
     fn step(&mut self) -> Result<Tick, Failure> {
         let watched = &mut *self.0;
         let mut tick = tick(&mut watched.session);
-        watched.unpowered |= watched.power.is_lost(&tick.telemetry);
-        if watched.unpowered {
+        if !watched.has_power(&tick) {
             return Err(lost_power());
         }
-        watched.now = tick.telemetry.tick;
         tick.telemetry.plan_tick = watched.plan_tick;
-        if let Err(error) = watched.keep.tick(&watched.joined, &tick) {
-            watched.failed = watched.failed.take().or(Some(error));
+        if !watched.log(&tick) {
             return Err(Failure::interrupted());
         }
         watched.listen();
@@ -39,7 +36,7 @@ impl Driven for Aside<'_, '_> {
         if request == Request::Unhome {
             self.0.power.forget();
         }
-        self.0.session.request(request).map_err(|why| Failure::failed("session", why.to_string()))
+        self.0.session.request(request).map_err(refused)
     }
 }
 

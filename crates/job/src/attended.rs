@@ -11,11 +11,6 @@ const WAIT: &str = "the camera looks into what is off; wait, or stop it";
 const GO_ON: &str = "arm first, then let it go on";
 
 impl Watched<'_> {
-    /// Whether anybody may still ask for anything.
-    pub(crate) fn is_attended(&self) -> bool {
-        self.hands.is_there()
-    }
-
     /// The camera begins to look into what is off, or is done with that. What it has drawn meanwhile is drawn as planned.
     pub(crate) fn look(&mut self, on: bool) {
         if on == self.looking.on {
@@ -58,7 +53,7 @@ impl Watched<'_> {
     /// Does what may be asked while a plan is followed. Where something is to be looked into first, or the plan begun again, that is done once
     /// somebody has armed.
     fn ask_following(&mut self, request: Request) -> Result<(), Refused> {
-        let anew = self.due.is_some() || self.session.snapshot().plan_ticks == 0;
+        let anew = self.due.is_some() || self.session.awaits_job();
         match (&request, self.session.state()) {
             (Request::Resume, State::Armed) if anew => {
                 self.goes_on = true;
@@ -81,7 +76,7 @@ impl Watched<'_> {
                 self.session.request(Request::Stop)
             }
             Request::Resume if is_stopped && state == State::Armed => {
-                self.looking.goes_on = true;
+                self.goes_on = true;
                 self.session.request(Request::Disarm)
             }
             Request::Arm | Request::Disarm | Request::Clear if is_stopped => self.session.request(request),
@@ -96,8 +91,8 @@ impl Watched<'_> {
     pub(crate) fn is_to_look_again(&mut self) -> bool {
         let began = self.now;
         let waits = |watched: &Self| {
-            let is_stopped = watched.looking.stop.is_wanted() && !watched.looking.goes_on;
-            is_stopped && !watched.is_ended() && watched.is_attended()
+            let is_stopped = watched.looking.stop.is_wanted() && !watched.goes_on;
+            is_stopped && !watched.is_ended() && watched.hands.is_there()
         };
         if waits(self) {
             self.hands.looks(Look::Stopped);
@@ -107,7 +102,7 @@ impl Watched<'_> {
         while waits(self) {
             self.step();
         }
-        if !self.looking.goes_on {
+        if !std::mem::take(&mut self.goes_on) {
             return false;
         }
         let lasted_s = seconds(self.now.wrapping_sub(began));

@@ -1,6 +1,7 @@
 //! One way to drive a session with somebody at the wall, whatever is drawn.
 
 use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
+use tracelight_eye::refused;
 use tracelight_rig::Fault;
 use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
 use tracelight_sim::{AFTERMATH_TICKS, Simulated as _, SimulatedRig, Tick, tick};
@@ -44,7 +45,6 @@ pub(crate) struct Ended {
     pub(crate) failure: Option<Failure>,
     /// The fault that is latched.
     pub(crate) fault: Option<Fault>,
-    pub(crate) state: State,
     /// Where it stood.
     pub(crate) now: Snapshot,
 }
@@ -62,7 +62,7 @@ pub(crate) fn drive(
     let first = tick(wall);
     check_homed(&first.telemetry)?;
     course.keep(keep, first, &wall.snapshot(), 0)?;
-    begin(wall, job).map_err(|why| Failure::failed("session", why.to_string()))?;
+    begin(wall, job).map_err(refused)?;
     let mut power = PowerWatch::default();
     power.is_lost(&first.telemetry);
     let (mut goodbye, mut aftermath, mut on_ticks) = (GOODBYE_TICKS, AFTERMATH_TICKS, 0);
@@ -72,16 +72,12 @@ pub(crate) fn drive(
         let laps = wall.snapshot().laps;
         let last = tick(wall);
         if power.is_lost(&last.telemetry) {
-            return Ok(Ended {
-                failure: Some(lost_power()),
-                fault: None,
-                state: wall.state(),
-                now: wall.snapshot(),
-            });
+            return Ok(Ended { failure: Some(lost_power()), fault: None, now: wall.snapshot() });
         }
         let now = wall.snapshot();
         if let Err(why) = course.keep(keep, last, &now, laps) {
-            darken(wall);
+            let _ = wall.request(Request::Stop);
+            tick(wall);
             return Err(why);
         }
         while let Some(event) = wall.event() {
@@ -105,23 +101,16 @@ pub(crate) fn drive(
             hands.refused(&why);
         }
     }
-    let (state, now) = (wall.state(), wall.snapshot());
+    let now = wall.snapshot();
     // whatever ended it, and whether its gate is open or not
-    let lights = wall.told().actuation.lights();
-    if wall.state() != State::Done {
+    if now.state != State::Done {
         let _ = wall.request(Request::Stop);
     }
-    if lights {
-        let laps = wall.snapshot().laps;
-        let last = darken(wall);
-        course.keep(keep, last, &wall.snapshot(), laps)?;
+    if now.gate {
+        let last = tick(wall);
+        course.keep(keep, last, &wall.snapshot(), now.laps)?;
     }
-    Ok(Ended { failure: None, fault: wall.told().fault, state, now })
-}
-
-fn darken(wall: &mut Session<&mut SimulatedRig>) -> Tick {
-    let _ = wall.request(Request::Stop);
-    tick(wall)
+    Ok(Ended { failure: None, fault: wall.told().fault, now })
 }
 
 fn begin(wall: &mut Session<&mut SimulatedRig>, job: Job) -> Result<(), Refused> {

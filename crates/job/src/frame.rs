@@ -48,7 +48,7 @@ pub(crate) fn drive_framed(
     hands.frames(true);
     let mut framed = Framed { frame, first, course, stage: Stage::Before };
     let mut ended = drive(rig, frame.job.clone(), &mut framed, (keep, hands), task)?;
-    if framed.stage != Stage::Course && ended.state == State::Done {
+    if framed.stage != Stage::Course && ended.now.state == State::Done {
         let message = "nobody asked for more than the frame for ten minutes: it ended, and nothing was drawn";
         ended.failure = ended.failure.or_else(|| Some(Failure::failed("unfinished", message)));
     }
@@ -104,7 +104,7 @@ impl Course for Framed<'_> {
         hands: &mut dyn Hands,
         task: Task<'_>,
     ) -> Result<(), Refused> {
-        let begins = wall.state() == State::Armed && wall.snapshot().plan_ticks == 0;
+        let begins = wall.awaits_job();
         let goes_on = matches!(ask, Ask::Step(_) | Ask::Request(Request::Resume));
         match (self.stage, ask) {
             (Stage::Course, ask) => self.course.ask(ask, wall, hands, task),

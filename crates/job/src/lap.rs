@@ -1,6 +1,6 @@
 //! A lap that no camera follows. Somebody at the wall may pause, stop, hurry or slow it, and let it go on.
 
-use tracelight_session::{Event, Refused, Request, Session, Snapshot, State};
+use tracelight_session::{Event, Refused, Request, Session, Snapshot};
 use tracelight_sim::{Run, SimulatedRig, Tick, job_of};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
@@ -77,10 +77,7 @@ impl Course for Lap<'_> {
         _: Task<'_>,
     ) -> Result<(), Refused> {
         match ask {
-            // it was stopped, or a fault came, before it began
-            Ask::Request(Request::Resume)
-                if wall.state() == State::Armed && wall.snapshot().plan_ticks == 0 =>
-            {
+            Ask::Request(Request::Resume) if wall.awaits_job() => {
                 wall.request(Request::Next(job_of(self.plan, self.dry)))
             }
             Ask::Request(request) => wall.request(request),

@@ -7,10 +7,10 @@ use tracelight_eye::head::{DotsRequest, find_head};
 use tracelight_eye::homing::home_again;
 use tracelight_eye::power::lost_power;
 use tracelight_eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
-use tracelight_eye::{Driven as _, Eye, Looks, PATIENCE_TICKS, Shot};
-use tracelight_pipeline::refused;
+use tracelight_eye::{Driven as _, Eye, Looks, PATIENCE_TICKS, Shot, refused};
+use tracelight_pipeline as pipeline;
 use tracelight_rig::{PanTilt, TICK_F64_S};
-use tracelight_session::{Refused, Request, State, When, seconds};
+use tracelight_session::{Request, State, When, seconds};
 use tracelight_stroke::{Drawing, Stroke};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::{Plan, plan};
@@ -214,7 +214,7 @@ impl Watched<'_> {
         );
         self.looking.stop.check()?;
         self.recovered(began_s, what, found.dots);
-        plan(left, &self.driving.machine, &self.driving.request).map_err(refused)
+        plan(left, &self.driving.machine, &self.driving.request).map_err(pipeline::refused)
     }
 
     /// By how much the spot had moved on what is left, in the mean, mm: of a head that is so and stands so, and whose joints were by so much further than
@@ -238,7 +238,6 @@ impl Watched<'_> {
 
     /// Forgets the job and goes back to zero in the dark.
     fn home(&mut self) -> Result<(), Failure> {
-        let refused = |why: Refused| Failure::failed("session", why.to_string());
         if self.session.state() == State::Fault {
             self.session.request(Request::Clear).map_err(refused)?;
             self.step();

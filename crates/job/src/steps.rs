@@ -65,7 +65,7 @@ pub(crate) fn run_steps(
     let mut walk = Walk::begin(items, driving, dry)?;
     let first = walk.looped.job.clone();
     let ended = drive_framed(rig, (first, &mut walk), frame, (keep, hands), task)?;
-    if ended.state == State::Done {
+    if ended.now.state == State::Done {
         walk.seen.notes.push("nothing was asked for ten minutes: it ended, dark".to_owned());
     }
     (walk.seen.failure, walk.seen.fault) = (ended.failure, ended.fault);
@@ -257,7 +257,7 @@ impl Course for Walk<'_> {
         hands: &mut dyn Hands,
         task: Task<'_>,
     ) -> Result<(), Refused> {
-        if wall.state() == State::Armed && wall.snapshot().plan_ticks == 0 {
+        if wall.awaits_job() {
             return self.begin_here(ask, wall);
         }
         match ask {

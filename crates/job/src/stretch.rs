@@ -2,6 +2,7 @@
 
 use tracelight_aim::Correction;
 use tracelight_eye::follow::{Suspicion, strayed_rad};
+use tracelight_eye::refused;
 use tracelight_eye::trim::Trimmer;
 use tracelight_rig::{Darkness, Phase};
 use tracelight_session::{Job, Request, State};
@@ -11,16 +12,13 @@ use tracelight_trajectory::Plan;
 
 use crate::watched::{Due, Ended, Watched, may_be_found_again};
 
-/// Ticks since the plan's clock last began to run within which a hold is no jolt.
-const BEGUN_TICKS: u32 = 200;
-
 impl Watched<'_> {
     /// Begins a plan, or goes on with it; who started the job, or lets it go on, has done both acts. A head that is anywhere goes to where the plan begins.
     fn go(&mut self, plan: &Plan) -> Result<(), Failure> {
         let dry = self.job.dry;
         let request = match self.session.state() {
             State::Ready | State::Done => {
-                self.trimmer = Some(Trimmer::new());
+                self.trimmer = Some(Trimmer::default());
                 let of = self.job.drawing.strokes.len() as u32;
                 let job = Job { first: self.first, of, ..job_of(plan, dry) };
                 if self.goes_on { Request::Next(job) } else { Request::Trace(job) }
@@ -30,23 +28,23 @@ impl Watched<'_> {
         };
         let arms = !dry || matches!(request, Request::Next(_));
         let armed = if arms { self.session.request(Request::Arm) } else { Ok(()) };
-        armed
-            .and_then(|()| self.session.request(request))
-            .map_err(|why| Failure::failed("session", why.to_string()))
+        armed.and_then(|()| self.session.request(request)).map_err(refused)
     }
 
     /// Follows a plan until something happens.
     pub(crate) fn follow(&mut self, plan: &Plan) -> Result<Ended, Failure> {
+        self.look(false);
         if self.is_ended() {
             return Ok(self.stopped());
         }
         self.go(plan)?;
         let mut most = plan.points.len() + self.session.rig().patience_ticks();
         let mut aftermath = AFTERMATH_TICKS;
-        let (mut traced_ticks, mut lit) = (0_u32, false);
+        let mut lit = false;
         while most > 0 && aftermath > 0 {
             let wanted = if self.job.seen.open { Correction::default() } else { self.follower.correction() };
             self.trimmer.iter_mut().for_each(|trimmer| trimmer.wanted = wanted);
+            let under_way = self.follower.is_under_way();
             let (tick, suspicion) = self.step();
             if self.is_over() {
                 return Ok(self.stopped());
@@ -77,18 +75,16 @@ impl Watched<'_> {
                 None if state == State::Done => return Ok(Ended::Done),
                 _ => {}
             }
-            aftermath -= u32::from(self.held && !self.is_attended());
-            most -= usize::from(!self.held && !self.is_attended());
+            aftermath -= u32::from(self.held && !self.hands.is_there());
+            most -= usize::from(!self.held && !self.hands.is_there());
             lit |= tick.telemetry.actuation.lights();
             // what is armed anew on its way begins with a hold, and often with another one soon after
-            let holds =
-                traced_ticks > BEGUN_TICKS && matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
+            let holds = under_way && matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
             // before the first light it may only wait until its encoders were seen to follow its motors
             let waits = !lit && tick.telemetry.darkness.contains(Darkness::Untested);
             // a gyroscope tells by itself whether the head stands where it stood
             let judged = tick.telemetry.darkness.contains(Darkness::Jolted);
             let jolt = (holds && !waits && !judged).then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
-            traced_ticks = if tick.telemetry.phase == Phase::Tracing { traced_ticks + 1 } else { 0 };
             let suspicion = suspicion.or(jolt).filter(|_| !self.job.seen.open && state != State::Fault);
             match suspicion {
                 Some(suspicion) if self.held => {

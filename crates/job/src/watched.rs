@@ -79,8 +79,6 @@ pub(crate) struct Looking {
     pub(crate) on: bool,
     /// Set once that is to end: whoever stands there stopped it, or the whole job is over.
     pub(crate) stop: Stop,
-    /// Whoever stopped it has armed since, and wants it to go on.
-    pub(crate) goes_on: bool,
     /// Speed of the plan's clock that is asked for; meanwhile it is the plan's own.
     pub(crate) speed: f32,
 }
@@ -107,7 +105,7 @@ pub(crate) struct Watched<'a> {
     /// Somebody has paused or stopped it, or a fault has, and nobody has let it go on.
     pub(crate) held: bool,
     pub(crate) due: Option<Due>,
-    /// Who holds it has armed, and wants it to go on where it cannot by itself.
+    /// Who holds the job, or stopped the camera's look, has armed since, and wants it to go on where it cannot by itself.
     pub(crate) goes_on: bool,
     /// Tick of the rig, as long as that had power.
     pub(crate) now: u32,
@@ -179,6 +177,7 @@ pub(crate) fn run_watched<'a>(
     }
     // what was drawn until then is told whatever became of it
     let failure = watched.all(job.plan.clone(), job.drawing.clone()).err();
+    watched.look(false);
     watched.darken();
     let failure = watched.power_lost().or(failure);
     watched.failed.take().map_or(Ok(()), Err)?;
@@ -196,9 +195,7 @@ impl Watched<'_> {
     fn all(&mut self, mut plan: Plan, mut drawing: Drawing) -> Result<(), Failure> {
         loop {
             let Some((why, first, left)) = self.one(&plan, &drawing)? else { return Ok(()) };
-            let next = self.looked(|watched| watched.found_again(&why, &left));
-            self.look(false);
-            let next = next?;
+            let next = self.looked(|watched| watched.found_again(&why, &left))?;
             self.first += first;
             self.base = join(&mut self.joined, self.plan_tick, &next, self.first);
             self.plan_tick = self.base;
@@ -212,24 +209,15 @@ impl Watched<'_> {
         loop {
             let suspicion = match self.follow(plan)? {
                 Ended::Fault(fault) => {
-                    self.look(true);
                     let why = Why { words: format!("fault {}", fault.code()), seen_off: false };
-                    let rest = left(plan, drawing, self.rewound());
-                    if rest.is_none() {
-                        self.look(false);
-                    }
-                    return Ok(rest.map(|(first, left)| (why, first, left)));
+                    return Ok(left(plan, drawing, self.rewound()).map(|(first, left)| (why, first, left)));
                 }
                 Ended::Done | Ended::Stopped | Ended::GivenUp => return Ok(None),
                 Ended::Suspect(suspicion) => suspicion,
             };
-            let looked = self.looked(|watched| watched.look_after(suspicion));
+            let Some(why) = self.looked(|watched| watched.look_after(suspicion))? else { continue };
             // what was all but finished is finished
-            let rest = left(plan, drawing, self.rewound());
-            if let (Ok(Some(_)), None) | (Ok(None) | Err(_), _) = (&looked, &rest) {
-                self.look(false);
-            }
-            if let (Some(why), Some((first, left))) = (looked?, rest) {
+            if let Some((first, left)) = left(plan, drawing, self.rewound()) {
                 return Ok(Some((why, first, left)));
             }
         }
@@ -247,8 +235,8 @@ impl Watched<'_> {
         }
     }
 
-    /// Has the camera look into what is off, until it has, however often somebody stops that on its way and has it go on. It looks on until
-    /// [`look`](Self::look) ends that.
+    /// Has the camera look into what is off, until it has, however often somebody stops that on its way and has it go on. It looks on until a plan is
+    /// followed again.
     fn looked<T>(&mut self, mut look: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Failure> {
         self.look(true);
         loop {
@@ -301,19 +289,14 @@ impl Watched<'_> {
             Some(trimmer) => tick_trimmed(&mut self.session, trimmer),
             None => tick(&mut self.session),
         };
-        // its ticks, counts and clock are others from then on
-        self.unpowered |= self.power.is_lost(&tick.telemetry);
-        if self.unpowered {
+        if !self.has_power(&tick) {
             return (tick, None);
         }
-        self.now = tick.telemetry.tick;
         self.place(&mut tick);
         self.strike(&tick);
         let suspicion = self.follower.tick(self.session.rig_mut(), &tick);
         self.tell_blindness();
-        if let Err(error) = self.keep.tick(&self.joined, &tick) {
-            self.failed = self.failed.take().or(Some(error));
-        }
+        self.log(&tick);
         if tick.telemetry.tick.is_multiple_of(256) {
             self.task.at(u64::from(tick.telemetry.plan_tick));
         }
@@ -327,6 +310,23 @@ impl Watched<'_> {
         }
         self.listen();
         (tick, suspicion)
+    }
+
+    /// Whether the rig still has power at a tick; its ticks, counts and clock are others once it lost it.
+    pub(crate) fn has_power(&mut self, tick: &Tick) -> bool {
+        self.unpowered |= self.power.is_lost(&tick.telemetry);
+        if !self.unpowered {
+            self.now = tick.telemetry.tick;
+        }
+        !self.unpowered
+    }
+
+    /// Logs a tick. Whether it could be: otherwise that ends the run.
+    pub(crate) fn log(&mut self, tick: &Tick) -> bool {
+        let logged = self.keep.tick(&self.joined, tick);
+        let is_logged = logged.is_ok();
+        self.failed = self.failed.take().or(logged.err());
+        is_logged
     }
 
     /// Tells of a rig that lost power since it drew.

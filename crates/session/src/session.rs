@@ -92,6 +92,11 @@ impl<R: Rig> Session<R> {
         self.state == State::Paused && self.check_resume().is_ok()
     }
 
+    /// Whether it is armed with no job in hand: whatever was to be done was stopped, or ended by a fault, before it began.
+    pub fn awaits_job(&self) -> bool {
+        self.state == State::Armed && self.running.is_none()
+    }
+
     /// Where it stands.
     pub fn snapshot(&self) -> Snapshot {
         let job = self.running.as_ref();

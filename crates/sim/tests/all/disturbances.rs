@@ -240,7 +240,7 @@ fn a_supply_that_sags_is_drawn_through_or_waited_for() {
         let left = if drawn.goes_on { 0.6 + 0.4 * drawn.strength } else { 1.0 };
         rig.suffer(Trouble::SupplySag(left));
     };
-    check(&Case { name: "sag", act, over: |ticks| 5 * ticks, furthest_mm: 4.0, faults: 6, bumped: 10 });
+    check(&Case { name: "sag", act, over: |ticks| 5 * ticks, furthest_mm: 3.5, faults: 6, bumped: 10 });
 }
 
 /// More than the motors have, or hardly any supply at all: dark like the others, and back or a named fault.
