@@ -31,6 +31,11 @@ const REST_TICKS: u32 = 400;
 /// Ticks of the plan about a pause in which a place may be lit twice; further on lines cross.
 const ABOUT_TICKS: u32 = 300;
 
+/// What few holds may do, doubled and further off, mm.
+const FEW_MM: (f64, f64) = (0.5, 0.1);
+/// The same of many: one of them is at the tip of a star, where the way back lies beside the way there.
+const MANY_MM: (f64, f64) = (1.0, 0.15);
+
 /// How somebody holds a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum How {
@@ -185,7 +190,13 @@ fn held(job: &Prepared, somebody: Option<Somebody>, task: Task<'_>) -> (Ran, Lig
     (ran, keep)
 }
 
-fn check_holds(pictures: &[(&str, &[u8])], seen: bool, times: u64) {
+/// Holds each job so many times. At most so much of it is doubled, and so much further off than undisturbed, mm.
+fn check_holds(
+    pictures: &[(&str, &[u8])],
+    seen: bool,
+    times: u64,
+    (most_doubled_mm, most_more_mm): (f64, f64),
+) {
     let stop = Stop::default();
     let task = Task { progress: &NoProgress, stop: &stop };
     for (seed, &picture) in (3..).zip(pictures) {
@@ -243,20 +254,20 @@ fn check_holds(pictures: &[(&str, &[u8])], seen: bool, times: u64) {
             more_mm[1],
             checked[1],
         );
-        // of many holds one is at the tip of a star, where the way back lies beside the way there
-        assert!(missing_mm <= 0.2 && doubled_mm <= 1.0 && more_mm[0] <= 0.15 && more_mm[1] <= 0.3);
+        assert!(missing_mm <= 0.2 && doubled_mm <= most_doubled_mm);
+        assert!(more_mm[0] <= most_more_mm && more_mm[1] <= 0.3);
         assert!(u64::from(checked[0]) <= times.div_ceil(3), "{checked:?} checks");
     }
 }
 
 #[test]
 fn what_a_camera_follows_is_held_anywhere_and_goes_on_where_its_light_was() {
-    check_holds(&PICTURES[..2], true, 8);
+    check_holds(&PICTURES[..2], true, 8, FEW_MM);
 }
 
 #[test]
 fn so_is_what_nobody_follows() {
-    check_holds(&PICTURES[1..2], false, 12);
+    check_holds(&PICTURES[1..2], false, 12, FEW_MM);
 }
 
 /// A run of a job with which something goes wrong on its way, to its end.
@@ -410,6 +421,6 @@ fn whoever_stops_a_camera_that_looks_for_the_head_may_have_it_go_on() {
 #[test]
 #[ignore = "minutes: `bash .ci/run long`; its short twin always runs"]
 fn held_at_many_moments() {
-    check_holds(&PICTURES[..2], true, 62);
-    check_holds(&PICTURES, false, 64);
+    check_holds(&PICTURES[..2], true, 62, MANY_MM);
+    check_holds(&PICTURES, false, 64, MANY_MM);
 }
