@@ -29,6 +29,7 @@ pub fn report() -> Config {
         enable_on_ticks: 0,
         enable_off_ticks: 0,
         host_silence_ticks: 50,
+        host_lost_ticks: 1000,
         standing_ticks: 1000,
         standing_radius_rad: 0.0014771085,
         tolerance_limit_rad: 0.1,

@@ -51,8 +51,10 @@ pub struct Config {
     pub enable_on_ticks: u32,
     /// From the enable's fall to dark, by the second switch, ticks.
     pub enable_off_ticks: u32,
-    /// Ticks a host that has said it is there may be silent.
+    /// Ticks a host that has said it is there may be silent before it is dark and the plan's clock stands.
     pub host_silence_ticks: u32,
+    /// Ticks it may be silent before that is a fault.
+    pub host_lost_ticks: u32,
     /// How long light may stand in one place, ticks.
     pub standing_ticks: u32,
     /// Radius of a place as the head sees it, rad.

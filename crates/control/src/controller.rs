@@ -165,6 +165,13 @@ impl Controller {
         }
     }
 
+    /// Stops the plan's clock in the same way until the host is heard again. The gate alone opens: whoever is heard soon goes on soon.
+    fn wait_for_host(&self, state: &mut State) {
+        let lit = state.watch.laser.lights();
+        state.supervisor.begin_hold();
+        state.player.stop_in(if lit { self.config.laser_off_ticks } else { 0 });
+    }
+
     /// A dot; of a head that is not homed, one that there is room for, or none.
     fn point(&self, state: &mut State, ticks: u32) {
         if state.supervisor.homed {
@@ -211,8 +218,12 @@ impl Controller {
     pub fn tick(&self, state: &mut State, sensed: &Sensed) -> Telemetry {
         let sensed = &from_home(sensed, &state.home);
         self.observe(state, sensed);
-        if state.supervisor.phase == Phase::Tracing && state.player.may_pause(self.config.laser_off_ticks) {
-            self.disarm(state);
+        if state.supervisor.phase == Phase::Tracing {
+            if state.player.may_pause(self.config.laser_off_ticks) {
+                self.disarm(state);
+            } else if !state.watch.hears_host(&self.config) {
+                self.wait_for_host(state);
+            }
         }
         let played = state.player.play();
         let estimates = *state.servo.estimates();
@@ -308,6 +319,7 @@ impl Controller {
             steady: state.watch.is_steady(),
             tried: state.supervisor.are_tried(&state.sensed, state.player.has_light()),
             host_silent: !state.watch.hears_host(&self.config),
+            runs_on: state.player.runs_on(),
             planned: state.player.wants_light(self.config.laser_on_ticks, self.config.laser_off_ticks),
             light_due: state.player.light_is_due(self.config.laser_on_ticks),
             begun: state.player.has_begun(),
@@ -339,7 +351,8 @@ impl Controller {
     /// where it stands; with a laser that does not go dark, to where it is to be parked.
     fn reference(&self, state: &mut State, played: &Played) -> Reference {
         let stands = match state.supervisor.phase {
-            Phase::Holding | Phase::Testing | Phase::Faulted => true,
+            Phase::Holding => !state.player.runs_on(),
+            Phase::Testing | Phase::Faulted => true,
             Phase::Dark | Phase::Armed => {
                 !state.player.runs_on()
                     && (state.way_back.is_some() || (state.player.has_begun() && played.segment.is_some()))

@@ -63,6 +63,8 @@ pub(crate) struct Situation<'a> {
     pub(crate) tried: bool,
     /// No host has said of late that it is there.
     pub(crate) host_silent: bool,
+    /// The plan's clock is about to stop, with light that is still on its way out.
+    pub(crate) runs_on: bool,
     /// The plan wants the gate open, at the rate of its clock.
     pub(crate) planned: bool,
     /// What the gate lets through now falls where the plan wants light, however slowly its clock runs.
@@ -82,7 +84,7 @@ pub(crate) enum Clock {
     Run,
     /// Stands still until it may run again.
     Stop,
-    /// Has not begun, or is over.
+    /// Has not begun, or is over, or is about to stop.
     Wait,
 }
 
@@ -164,6 +166,7 @@ impl Supervisor {
         }
         match self.phase {
             Phase::Tracing => Clock::Run,
+            Phase::Holding if at.runs_on => Clock::Wait,
             Phase::Holding | Phase::Testing | Phase::Faulted => Clock::Stop,
             Phase::Dark | Phase::Armed | Phase::Done => Clock::Wait,
         }
@@ -176,7 +179,8 @@ impl Supervisor {
         }
     }
 
-    fn begin_hold(&mut self) {
+    /// The plan's clock stands from now on until the head is back and nothing speaks against going on.
+    pub(crate) fn begin_hold(&mut self) {
         self.phase = Phase::Holding;
         self.calm_ticks = 0;
         self.settled_ticks = 0;
@@ -192,9 +196,10 @@ impl Supervisor {
 
     fn hold(&mut self, config: &Config, at: &Situation<'_>) {
         self.tests = if at.tested { 0 } else { self.tests };
-        self.held_ticks = self.held_ticks.saturating_add(1);
+        // who waits for its host is not late
+        self.held_ticks = self.held_ticks.saturating_add(u32::from(!at.host_silent));
         self.settled_ticks = if returned(at) { self.settled_ticks + 1 } else { 0 };
-        let is_back = self.settled_ticks >= RETURN_TICKS;
+        let is_back = self.settled_ticks >= RETURN_TICKS && !at.host_silent;
         if is_back && at.tested && at.tried {
             self.phase = Phase::Tracing;
         } else if is_back && !at.tested && self.tests < MOST_TESTS {

@@ -125,7 +125,7 @@ darknesses! {
         what: "No host said of late that it is there.",
         code: "host-silent",
         words: "No host had said of late that it is there.",
-        advice: "See whether the host runs and whether the connection holds. control.host_silence sets the bound.",
+        advice: "Nothing, if it is rare: the plan waits, and goes on once the host is heard. If it comes again and again, see whether the host has other work to do and whether the connection holds. control.host_silence sets the bound.",
     }
     Untested = 12 {
         what: "An encoder was not seen to follow its motor yet, or something spoke against it since: a little move in the dark is to tell. Or the laser's two switches were not tried yet, where something watches them.",

@@ -182,11 +182,11 @@ faults! {
         what: "The host stopped saying that it is there.",
         code: "host-lost",
         seen: "a host that has said that it is there says so no more",
-        soon: Soon::Words("after control.host_silence"),
+        soon: Soon::Words("dark after control.host_silence, a fault after control.host_lost"),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
-        words: "The host stopped saying that it is there: it ended, hangs, or the connection broke. control.host_silence sets the bound.",
+        words: "The host stopped saying that it is there: it ended, hangs, or the connection broke. It was dark since control.host_silence; control.host_lost sets when that is a fault.",
     }
     EstimateDiverged = 13 {
         what: "What is believed of a joint's speed does not add up to what its encoder counted.",

@@ -112,7 +112,8 @@ pub enum Command {
     Abandon,
     /// Append a segment. Its start must join the end of the previous one, and all of it must stay within the joints' limits.
     Append(Segment),
-    /// Signal that the host is alive. Nothing is armed and no dot is lit without it. Once sent, it must be repeated: silence is a fault.
+    /// Signal that the host is alive. Nothing is armed and no dot is lit without it. Once sent, it must be repeated:
+    /// silence darkens and stops the plan's clock, which goes on by itself once the host is heard again; a long silence is a fault.
     KeepAlive,
     /// Declare that no further segment will come. Running out of segments is then the end of the job; a later segment is a fault.
     Finish,

@@ -256,7 +256,7 @@ pub(crate) fn model_keys() -> Vec<Key<Model>> {
 }
 
 /// Keys of `[truth.gyroscope]`, `[truth.wear]`, `[control]` and `[motion]`.
-pub(crate) const RIG_KEYS: [Key<RigConfig>; 40] = [
+pub(crate) const RIG_KEYS: [Key<RigConfig>; 41] = [
     flag("truth.gyroscope.fitted", "whether a gyroscope is fixed to what it stands on", |r| {
         &mut r.truth.gyroscope.fitted
     }),
@@ -416,9 +416,12 @@ pub(crate) const RIG_KEYS: [Key<RigConfig>; 40] = [
         "control.host_silence",
         TIMES,
         (5e-3, 1.0),
-        "how long a host may be silent before that is a fault",
+        "how long a host may be silent before it is dark and the plan waits for it",
         |r| &mut r.control.host_silence_s,
     ),
+    real("control.host_lost", TIMES, (0.05, 60.0), "how long it may be silent before that is a fault", |r| {
+        &mut r.control.host_lost_s
+    }),
     real(
         "control.scale_tolerance",
         PURE,

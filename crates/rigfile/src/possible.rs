@@ -10,8 +10,10 @@ use crate::safety::impossible_park;
 /// # Errors
 /// What is impossible about it.
 pub(crate) fn possible(config: &RigConfig) -> Result<(), String> {
-    if let Some(trouble) =
-        impossible_laser(config).or_else(|| impossible_park(config)).or_else(|| impossible_drive(config))
+    if let Some(trouble) = impossible_laser(config)
+        .or_else(|| impossible_park(config))
+        .or_else(|| impossible_drive(config))
+        .or_else(|| impossible_silence(config))
     {
         return Err(trouble);
     }
@@ -40,6 +42,17 @@ fn impossible_laser(config: &RigConfig) -> Option<String> {
         format!(
             "[safety] standing: light may stand for {standing_s} s, and this laser's relay takes {relay_s} s to open: it is too slow for \
              that light, or model.relay.off is not its own"
+        )
+    })
+}
+
+/// A host that is lost before it is silent.
+fn impossible_silence(config: &RigConfig) -> Option<String> {
+    let (silence_s, lost_s) = (config.control.host_silence_s, config.control.host_lost_s);
+    (lost_s < silence_s).then(|| {
+        format!(
+            "[control] host_lost: a host that is silent for {lost_s} s is lost, but it is waited for only after {silence_s} s: host_lost \
+             must be no less than host_silence"
         )
     })
 }

@@ -30,8 +30,10 @@ pub struct ControlSettings {
     pub tolerance_m: f64,
     /// How long the head may need to come back to its stroke, s.
     pub hold_limit_s: f64,
-    /// How long a host may be silent, s.
+    /// How long a host may be silent before it is dark and the plan's clock stands, s.
     pub host_silence_s: f64,
+    /// How long it may be silent before that is a fault, s; no less than that.
+    pub host_lost_s: f64,
     /// By how much what an encoder shows of a motion may differ from what its motor must have made, as a share.
     pub scale_tolerance: f64,
     /// Share of its amplifier's limit that a motor stands for ever.

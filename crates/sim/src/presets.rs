@@ -54,6 +54,7 @@ impl RigConfig {
                 tolerance_m: 3e-3,
                 hold_limit_s: 3.0,
                 host_silence_s: 0.05,
+                host_lost_s: 1.0,
                 // amplifiers differ by a tenth, inertia and friction by as much again
                 scale_tolerance: 0.35,
                 // small geared motors stand 1.4 times their rated current for half a minute

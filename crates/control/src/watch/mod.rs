@@ -136,7 +136,7 @@ impl Watch {
     fn host(&mut self, config: &Config) -> Option<Fault> {
         let silence = self.silence_ticks?.saturating_add(1);
         self.silence_ticks = Some(silence);
-        (silence > config.host_silence_ticks).then_some(Fault::HostLost)
+        (silence > config.host_lost_ticks).then_some(Fault::HostLost)
     }
 
     /// What the volts of a tick show, if anything.

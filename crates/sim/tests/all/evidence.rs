@@ -99,9 +99,9 @@ fn arming_acknowledges_the_faults_there_were_and_no_others() {
 fn a_fault_that_lasts_counts_once_and_another_kind_counts_too() {
     let plan = plan_of(&RigConfig::report(), circle(0.2));
     let (mut rig, _) = under_way(&plan, 300, 0, 0);
-    // silence trips in every tick from the fiftieth on
-    let numbers: Vec<u32> = (0..200).map(|_| rig.step().telemetry.fault_number).collect();
-    assert_eq!((numbers[40], numbers[199]), (0, 1));
+    // silence trips in every tick from the thousandth on
+    let numbers: Vec<u32> = (0..1200).map(|_| rig.step().telemetry.fault_number).collect();
+    assert_eq!((numbers[900], numbers[1199]), (0, 1));
     rig.suffer(Trouble::EncoderJump(Joint::Pan, 40));
     let after: Vec<Telemetry> = (0..200).map(|_| rig.step().telemetry).collect();
     let last = after.last().unwrap();
@@ -223,7 +223,7 @@ fn nothing_is_armed_for_a_host_that_is_not_there() {
         assert!(now.phase == Phase::Dark && now.darkness.contains(Darkness::HostSilent));
     }
     let (mut rig, _) = under_way(&plan, 200, 0, 0);
-    assert!((0..100).map(|_| rig.step()).last().unwrap().telemetry.fault == Some(Fault::HostLost));
+    assert!((0..1100).map(|_| rig.step()).last().unwrap().telemetry.fault == Some(Fault::HostLost));
     let number = rig.told().fault_number;
     rig.send(Command::Arm { acknowledges: number }).unwrap();
     assert_eq!(rig.step().telemetry.phase, Phase::Faulted);

@@ -20,6 +20,7 @@ mod recovery;
 mod segments;
 mod session;
 mod shapes;
+mod silence;
 mod slips;
 mod standing;
 mod sweep;
