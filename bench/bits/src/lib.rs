@@ -93,7 +93,7 @@ pub fn run_metered(ticks: u32, load: Load, meter: &mut impl Meter) -> Outcome {
         let telemetry = controller.tick(&mut state, &sensed);
         meter.tick();
         fnv.take(&telemetry);
-        fault = fault.or(telemetry.fault);
+        fault = fault.or(telemetry.fault());
         acknowledges = telemetry.fault_number;
         lit_ticks += u32::from(telemetry.actuation.gate);
         held_ticks += u32::from(matches!(telemetry.phase, Phase::Holding | Phase::Faulted));
@@ -136,7 +136,7 @@ impl Fnv {
             self.number(actuation.command_v[joint]);
         }
         self.word(u32::from(actuation.gate) | u32::from(telemetry.darkness.bits()) << 1);
-        self.word(telemetry.phase as u32 | (telemetry.fault.map_or(0, |fault| fault as u32 + 1)) << 8);
+        self.word(telemetry.phase as u32 | (telemetry.fault().map_or(0, |fault| fault as u32 + 1)) << 8);
     }
 
     /// Targets agree on every number, and on what is none, but not on the sign they give that.

@@ -6,6 +6,7 @@ use tracelight_rig::{
 use crate::config::Config;
 use crate::creep::Pace;
 use crate::estimate::Estimate;
+use crate::finding::Finding;
 use crate::light_budget::{LightBudget, longest_dot_ticks};
 use crate::player::{Played, Player};
 use crate::return_path::ReturnPath;
@@ -124,7 +125,7 @@ impl Controller {
             Command::Append(_) if !state.player.has_room() => return Err(command),
             Command::Append(segment) => {
                 if !self.config.may_run(&segment, state.supervisor.homed) || !state.player.append(segment) {
-                    state.supervisor.trip(Fault::SetpointInvalid);
+                    state.supervisor.trip(state.tick, Finding::of(Fault::SetpointInvalid));
                 }
             }
         }
@@ -136,7 +137,7 @@ impl Controller {
         if !read || !state.watch.hears_host(&self.config) || state.sensed.inputs.any_open() {
             return;
         }
-        if state.supervisor.fault.is_some() {
+        if state.supervisor.latched.is_some() {
             if state.supervisor.blind {
                 // what was believed is not worth keeping
                 state.servo = state.servo.anew(&self.config, &state.sensed.encoders);
@@ -249,7 +250,7 @@ impl Controller {
             darkness,
             homed: state.supervisor.homed,
             phase: state.supervisor.phase,
-            fault: state.supervisor.fault,
+            latched: state.supervisor.latched,
             fault_number: state.supervisor.fault_number,
         };
         run_clock(&mut state.player, clock);
@@ -271,7 +272,10 @@ impl Controller {
     fn observe(&self, state: &mut State, sensed: &Sensed) {
         state.sensed = *sensed;
         // before all that may come of them: a motor without a supply looks like a dead encoder
-        sensed.inputs.faults().for_each(|fault| state.supervisor.trip(fault));
+        for input in sensed.inputs.opened() {
+            let found = Finding { joint: input.joint(), ..Finding::of(input.fault()) };
+            state.supervisor.trip(state.tick, found);
+        }
         if core::mem::take(&mut state.fresh) {
             return;
         }
@@ -281,15 +285,18 @@ impl Controller {
         let seen = laser.seen_light(&self.config, sensed);
         state.budget.tick(&self.config, known_rad, laser.lights(), seen);
         let laser = laser.sense(&self.config, sensed);
-        if state.budget.is_asked_too_long() {
-            state.supervisor.trip(Fault::LightStood);
+        if let Some(found) = state.budget.asked_too_long() {
+            state.supervisor.trip(state.tick, found);
+        }
+        if let Some(found) = state.watch.sense(&self.config, &state.servo, sensed) {
+            // who knows nothing of where it stands has nothing to lose
+            if found.fault != Fault::Bumped || state.supervisor.homed {
+                state.supervisor.trip(state.tick, found);
+            }
         }
         // whatever else is wrong, a switch that is stuck is known
-        for fault in state.watch.sense(&self.config, &state.servo, sensed).into_iter().chain(laser) {
-            // who knows nothing of where it stands has nothing to lose
-            if fault != Fault::Bumped || state.supervisor.homed {
-                state.supervisor.trip(fault);
-            }
+        if let Some(found) = laser {
+            state.supervisor.trip(state.tick, found);
         }
     }
 
@@ -309,6 +316,7 @@ impl Controller {
     fn situation<'a>(&self, state: &State, played: &'a Played) -> Situation<'a> {
         let position_rad = state.servo.position_rad();
         Situation {
+            tick: state.tick,
             setpoint: &played.setpoint,
             segment: played.segment.as_ref(),
             position_rad,
@@ -340,9 +348,9 @@ impl Controller {
             return none;
         }
         let volts = state.servo.drive(&self.config, &reference);
-        let unsound = (!state.servo.is_sound()).then_some(Fault::NotANumber);
-        if let Some(fault) = unsound.or(state.watch.drive(&self.config, &volts)) {
-            state.supervisor.trip(fault);
+        let unsound = (!state.servo.is_sound()).then_some(Finding::of(Fault::NotANumber));
+        if let Some(found) = unsound.or(state.watch.drive(&self.config, &volts)) {
+            state.supervisor.trip(state.tick, found);
         }
         volts
     }
@@ -395,8 +403,8 @@ impl Controller {
             state.test_move = None;
             state.way_back = None;
             state.supervisor.end_test();
-            if let Some(fault) = state.watch.end_test(&self.config) {
-                state.supervisor.trip(fault);
+            if let Some(found) = state.watch.end_test(&self.config) {
+                state.supervisor.trip(state.tick, found);
             }
         }
         Some(reference)

@@ -24,6 +24,7 @@ mod creep;
 mod crossed;
 mod elementary;
 mod estimate;
+mod finding;
 mod law;
 mod light_budget;
 mod limit;

@@ -18,9 +18,10 @@
 //! A direction is a place on the unit sphere, so light straight up stands, whatever pan does. What lies within r of each other on a wall at
 //! distance d lies within r / d as the head sees it, wherever on that wall it is.
 
-use tracelight_rig::{PanTilt, TICK_S};
+use tracelight_rig::{Fault, PanTilt, TICK_S};
 
 use crate::config::Config;
+use crate::finding::Finding;
 use crate::recent_light::RecentLight;
 use crate::squares::{Common, Direction, Rows, Square};
 
@@ -223,9 +224,10 @@ impl LightBudget {
         self.asked_ticks = if in_vain { self.asked_ticks.saturating_add(1) } else { 0 };
     }
 
-    /// Whether a plan has asked in vain for too long.
-    pub(crate) const fn is_asked_too_long(&self) -> bool {
-        self.asked_ticks >= PATIENCE_TICKS
+    /// The fault that it is when a plan has asked in vain for too long.
+    pub(crate) fn asked_too_long(&self) -> Option<Finding> {
+        (self.asked_ticks >= PATIENCE_TICKS)
+            .then(|| Finding::after(Fault::LightStood, self.asked_ticks, PATIENCE_TICKS))
     }
 }
 

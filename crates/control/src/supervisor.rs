@@ -1,6 +1,9 @@
-use tracelight_rig::{Darkness, DarknessSet, Fault, PanTilt, Phase, Segment, Sensed, Setpoint};
+use tracelight_rig::{
+    Darkness, DarknessSet, Fault, FaultRecord, Joint, PanTilt, Phase, Segment, Sensed, Setpoint,
+};
 
 use crate::config::Config;
+use crate::finding::Finding;
 use crate::switch_test::SwitchTest;
 use crate::watch::LaserWatch;
 
@@ -23,7 +26,7 @@ const LOST_TOLERANCES: f32 = 10.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Supervisor {
     pub(crate) phase: Phase,
-    pub(crate) fault: Option<Fault>,
+    pub(crate) latched: Option<FaultRecord>,
     /// A fault, the first or a later one, left nothing to control the motors by.
     pub(crate) blind: bool,
     /// The encoders know where the joints are.
@@ -48,6 +51,7 @@ pub(crate) struct Supervisor {
 
 /// What the supervisor judges a tick by.
 pub(crate) struct Situation<'a> {
+    pub(crate) tick: u32,
     pub(crate) setpoint: &'a PanTilt<Setpoint>,
     pub(crate) segment: Option<&'a Segment>,
     pub(crate) position_rad: PanTilt<f32>,
@@ -91,13 +95,16 @@ pub(crate) enum Clock {
 impl Supervisor {
     /// Latches a fault; the first one stays, and what any of them means for the motors and for what counts are worth. One that
     /// lasts, and trips in every tick, is one.
-    pub(crate) fn trip(&mut self, fault: Fault) {
+    #[cold]
+    pub(crate) fn trip(&mut self, tick: u32, found: Finding) {
+        let Finding { fault, joint, exceeded } = found;
         let kind = 1_u64 << fault.number();
         if self.kinds & kind == 0 {
             self.kinds |= kind;
             self.fault_number = self.fault_number.wrapping_add(1);
         }
-        self.fault = self.fault.or(Some(fault));
+        let number = self.fault_number;
+        self.latched.get_or_insert(FaultRecord { fault, number, tick, joint, exceeded });
         self.blind |= fault.leaves_motors_blind();
         self.homed &= !fault.loses_counts();
         if matches!(fault, Fault::LaserStuck | Fault::LaserDark) {
@@ -149,7 +156,7 @@ impl Supervisor {
     /// One tick: moves between phases and says what the clock does.
     pub(crate) fn tick(&mut self, config: &Config, at: &Situation<'_>) -> Clock {
         if !config.may_be_at(at.position_rad, self.homed) && self.phase != Phase::Dark {
-            self.trip(Fault::LimitReached);
+            self.trip(at.tick, beyond_range(config, at, self.homed));
         }
         self.pointing_ticks = if at.host_silent { 0 } else { self.pointing_ticks.saturating_sub(1) };
         self.dotless_ticks = if self.pointing_ticks > 0 { 0 } else { self.dotless_ticks.saturating_add(1) };
@@ -158,7 +165,7 @@ impl Supervisor {
             Phase::Armed if at.segment.is_some() && (at.begun || strayed(at)) => self.begin_hold(),
             Phase::Armed if at.segment.is_some() => self.phase = Phase::Tracing,
             Phase::Tracing if at.done => self.phase = Phase::Done,
-            Phase::Tracing if at.starved => self.trip(Fault::SetpointsStale),
+            Phase::Tracing if at.starved => self.trip(at.tick, Finding::of(Fault::SetpointsStale)),
             Phase::Tracing if must_hold(at) => self.begin_hold(),
             Phase::Holding => self.hold(config, at),
             Phase::Tracing => self.calm(),
@@ -205,8 +212,11 @@ impl Supervisor {
         } else if is_back && !at.tested && self.tests < MOST_TESTS {
             self.phase = Phase::Testing;
             self.tests += 1;
-        } else if is_back && !at.tested || self.held_ticks > config.hold_limit_ticks {
-            self.trip(Fault::HoldTimedOut);
+        } else if self.held_ticks > config.hold_limit_ticks {
+            let found = Finding::after(Fault::HoldTimedOut, self.held_ticks, config.hold_limit_ticks);
+            self.trip(at.tick, found);
+        } else if is_back && !at.tested {
+            self.trip(at.tick, Finding::of(Fault::HoldTimedOut));
         }
     }
 
@@ -214,7 +224,7 @@ impl Supervisor {
     pub(crate) fn may_light(&self, steady: bool) -> bool {
         let armed = matches!(self.phase, Phase::Armed | Phase::Tracing | Phase::Holding);
         let may_point = self.phase == Phase::Dark && self.pointing_ticks > 0;
-        self.fault.is_none() && steady && (armed || may_point)
+        self.latched.is_none() && steady && (armed || may_point)
     }
 
     /// What both switches of the laser are told in this tick, the gate's first, of which `lit` says whether it is to be lit. Armed, both stay open
@@ -273,10 +283,22 @@ impl Supervisor {
         let idle = matches!(self.phase, Phase::Armed | Phase::Done);
         let stale = idle || at.starved || at.segment.is_none();
         reasons.insert_if(stale && !seeks, Darkness::Stale);
-        reasons.insert_if(self.fault.is_some(), Darkness::Faulted);
+        reasons.insert_if(self.latched.is_some(), Darkness::Faulted);
         reasons.insert_if(at.host_silent, Darkness::HostSilent);
         reasons
     }
+}
+
+/// That a joint is believed outside its range.
+#[cold]
+fn beyond_range(config: &Config, at: &Situation<'_>, homed: bool) -> Finding {
+    let found = |j: Joint| {
+        let ((lower, upper), value) = (config.range_rad(j, homed), at.position_rad[j]);
+        let bound = if value < lower { lower } else { upper };
+        let is_within = lower <= value && value <= upper;
+        (!is_within).then(|| Finding::beyond(Fault::LimitReached, value, bound).by(j))
+    };
+    Joint::BOTH.into_iter().find_map(found).unwrap_or(Finding::of(Fault::LimitReached))
 }
 
 fn tolerance(at: &Situation<'_>) -> Option<PanTilt<f32>> {

@@ -227,7 +227,7 @@ pub fn see_dots<D: Driven>(
             break;
         }
     }
-    let (is_done, fault) = (rig.session().state() == State::Done, rig.session().told().fault);
+    let (is_done, fault) = (rig.session().state() == State::Done, rig.session().told().latched);
     // dark, whether it came to its end or not
     rig.ask(Request::Stop)?;
     for _ in 0..AFTERMATH_TICKS {

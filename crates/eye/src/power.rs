@@ -33,7 +33,7 @@ impl PowerWatch {
 /// # Errors
 /// `unhomed`: nobody told the rig where zero is since it was powered up.
 pub fn check_homed(now: &Telemetry) -> Result<(), Failure> {
-    if now.homed || now.fault.is_some_and(Fault::loses_counts) {
+    if now.homed || now.fault().is_some_and(Fault::loses_counts) {
         return Ok(());
     }
     let message = "the head was powered up and not homed since: nobody knows where its light would fall, and nothing was drawn; home it first (tracelight calibrate head --home --camera …)";

@@ -25,7 +25,7 @@ impl Watched<'_> {
     /// Tells whoever stands there what this tick was, and does what they ask.
     pub(crate) fn listen(&mut self) {
         let recovers = |fault| may_be_found_again(fault) && self.can_recover();
-        if !self.held && self.session.told().fault.is_some_and(recovers) {
+        if !self.held && self.session.told().fault().is_some_and(recovers) {
             self.look(true);
         }
         if self.looking.on && self.task.stop.is_wanted() {

@@ -2,7 +2,7 @@
 
 use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
 use tracelight_eye::refused;
-use tracelight_rig::Fault;
+use tracelight_rig::FaultRecord;
 use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
 use tracelight_sim::{AFTERMATH_TICKS, Simulated as _, SimulatedRig, Tick, tick};
 use tracelight_task::{Failure, Task};
@@ -44,7 +44,7 @@ pub(crate) struct Ended {
     /// Why, if its rig lost power.
     pub(crate) failure: Option<Failure>,
     /// The fault that is latched.
-    pub(crate) fault: Option<Fault>,
+    pub(crate) fault: Option<FaultRecord>,
     /// Where it stood.
     pub(crate) now: Snapshot,
 }
@@ -110,7 +110,7 @@ pub(crate) fn drive(
         let last = tick(wall);
         course.keep(keep, last, &wall.snapshot(), now.laps)?;
     }
-    Ok(Ended { failure: None, fault: wall.told().fault, now })
+    Ok(Ended { failure: None, fault: wall.told().latched, now })
 }
 
 fn begin(wall: &mut Session<&mut SimulatedRig>, job: Job) -> Result<(), Refused> {

@@ -167,7 +167,7 @@ mod tests {
         struct Jumps(u32);
         impl Keep for Jumps {
             fn tick(&mut self, _: &Plan, tick: &Tick) -> Result<(), Failure> {
-                self.0 += u32::from(tick.telemetry.fault.is_some());
+                self.0 += u32::from(tick.telemetry.fault().is_some());
                 Ok(())
             }
         }

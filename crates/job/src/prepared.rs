@@ -418,8 +418,8 @@ struct Laps {
 
 /// Whether the last lap ended as it should.
 fn ending(run: &Run, stop: &Stop) -> Option<Failure> {
-    if let Some(fault) = run.fault() {
-        return Some(Failure::fault(fault));
+    if let Some(record) = run.latched() {
+        return Some(Failure::fault(record));
     }
     if stop.is_wanted() {
         return Some(Failure::interrupted());

@@ -252,8 +252,8 @@ impl Watched<'_> {
             if self.unpowered {
                 return Err(lost_power());
             }
-            if let Some(fault) = tick.telemetry.fault {
-                return Err(Failure::fault(fault));
+            if let Some(record) = tick.telemetry.latched {
+                return Err(Failure::fault(record));
             }
             if self.session.state() != State::Parking {
                 return Aside(self).settle();

@@ -1,7 +1,7 @@
 //! Strokes, or marks of points, one at a time: each is drawn again and again until somebody asks for the next one.
 
 use tracelight_pipeline::Driving;
-use tracelight_rig::Fault;
+use tracelight_rig::FaultRecord;
 use tracelight_session::{Event, Refused, Request, Session, Snapshot, State, seconds};
 use tracelight_sim::{Run, SimulatedRig, Tick};
 use tracelight_stroke::Drawing;
@@ -27,7 +27,7 @@ pub(crate) struct StepRun {
     /// Why it ended before its time, if neither the rig nor the user ended it.
     pub(crate) failure: Option<Failure>,
     /// The fault that ended it.
-    pub(crate) fault: Option<Fault>,
+    pub(crate) fault: Option<FaultRecord>,
     /// All items had their turn.
     pub(crate) finished: bool,
     /// When which point was ticked off, s of the run.

@@ -63,7 +63,7 @@ impl Watched<'_> {
             }
             let state = self.session.state();
             let was_held = std::mem::replace(&mut self.held, !state.is_on() && state != State::Parking);
-            match tick.telemetry.fault {
+            match tick.telemetry.fault() {
                 Some(fault) if may_be_found_again(fault) && self.can_recover() => {
                     if !was_held {
                         self.held = false;

@@ -182,7 +182,7 @@ pub(crate) fn run_watched<'a>(
     let failure = watched.power_lost().or(failure);
     watched.failed.take().map_or(Ok(()), Err)?;
     watched.tell();
-    let fault = watched.session.told().fault.map(Failure::fault);
+    let fault = watched.session.told().latched.map(Failure::fault);
     watched.diary.end(&watched.session.snapshot());
     let Watched { run, joined, figures, follower, diary, .. } = watched;
     let painting = follower.watch.painted.as_ref().and_then(Painted::picture);
@@ -258,7 +258,7 @@ impl Watched<'_> {
     fn jumped_rad(&self) -> f64 {
         let count_rad = self.driving.rig.model.encoder.count_rad();
         let ticks = &self.run.ticks;
-        let Some(sound) = ticks.iter().rposition(|tick| tick.telemetry.fault.is_none()) else { return 0.0 };
+        let Some(sound) = ticks.iter().rposition(|tick| tick.telemetry.fault().is_none()) else { return 0.0 };
         let (before, now) = (&ticks[sound].telemetry, &ticks[(sound + 1).min(ticks.len() - 1)].telemetry);
         let off = PanTilt::from_fn(|j| {
             let count = now.measured[j].count.wrapping_add(now.lost_counts[j]);

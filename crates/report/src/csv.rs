@@ -21,7 +21,7 @@ const AFTER_FAULT: usize = 100;
 /// `fault.csv`: the rows about the tick in which the last lap's fault was seen; `None` where there was none.
 #[must_use]
 pub fn fault_csv(job: &Finished<'_>) -> Option<Vec<u8>> {
-    let at = job.run.ticks.iter().position(|tick| tick.telemetry.fault.is_some())?;
+    let at = job.run.ticks.iter().position(|tick| tick.telemetry.fault().is_some())?;
     let from = at.saturating_sub(BEFORE_FAULT);
     let mut text = format!("{HEADER}\n").into_bytes();
     for sample in samples(job.plan, job.run).skip(from).take(at - from + AFTER_FAULT + 1) {
@@ -221,7 +221,7 @@ mod tests {
     fn the_ticks_about_a_fault_have_their_own_file() {
         let mut fixture = fixture::star();
         for tick in fixture.run.ticks.iter_mut().skip(300) {
-            tick.telemetry.fault = Some(tracelight_rig::Fault::EncoderDead);
+            tick.telemetry.latched = fixture::latched(tracelight_rig::Fault::EncoderDead);
         }
         let written = String::from_utf8(fault_csv(&fixture.job()).unwrap()).unwrap();
         let rows: Vec<&str> = written.lines().collect();

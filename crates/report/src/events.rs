@@ -1,6 +1,6 @@
 //! When it was dark where light was planned, and why.
 
-use tracelight_rig::{Darkness, Fault, TICK_F64_S, Telemetry};
+use tracelight_rig::{Darkness, Fault, FaultRecord, TICK_F64_S, Telemetry};
 use tracelight_sim::Run;
 
 /// A time when the rig darkened a beam that the plan wanted lit, or a fault that ended the job.
@@ -16,6 +16,8 @@ pub struct Event {
     pub lasted_s: f64,
     /// Whether the job ended with it.
     pub stops: bool,
+    /// Of a fault: what showed it.
+    pub latched: Option<FaultRecord>,
     /// Of a fault after which what the head stands on was turned: how far, rad about the head's x, y and z (ahead, left, up), by its gyroscope.
     pub foot_turned_rad: Option<[f32; 3]>,
 }
@@ -24,7 +26,11 @@ impl Event {
     /// What it means, with its figures.
     #[must_use]
     pub fn told(&self) -> String {
-        let Some([ahead, left, up]) = self.foot_turned_rad else { return self.words.to_owned() };
+        let evidence =
+            self.latched.as_ref().map(FaultRecord::evidence).filter(|evidence| !evidence.is_empty());
+        let words = evidence
+            .map_or_else(|| self.words.to_owned(), |shown| format!("{} Shown by {shown}.", self.words));
+        let Some([ahead, left, up]) = self.foot_turned_rad else { return words };
         let way = |rad: f32, positive: &str, negative: &str| {
             let degrees = f64::from(rad).to_degrees();
             format!("{:.2}° {}", degrees.abs(), if degrees < 0.0 { negative } else { positive })
@@ -34,7 +40,7 @@ impl Event {
             way(left, "down", "up"),
             way(ahead, "clockwise", "anticlockwise"),
         ];
-        format!("{} Its gyroscope says that it has turned by {}.", self.words, turned.join(", "))
+        format!("{words} Its gyroscope says that it has turned by {}.", turned.join(", "))
     }
 }
 
@@ -100,10 +106,11 @@ impl Watch {
 /// encoders were seen to follow its motors is none.
 fn trouble(telemetry: &Telemetry, waits: bool) -> Option<Event> {
     let t_s = f64::from(telemetry.tick) * TICK_F64_S;
-    if let Some(fault) = telemetry.fault {
+    if let Some(fault) = telemetry.fault() {
         let (code, words) = (fault.code(), fault.words());
         let foot_turned_rad = telemetry.foot_turned_rad.filter(|_| fault == Fault::Bumped);
-        return Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: true, foot_turned_rad });
+        let (lasted_s, latched) = (TICK_F64_S, telemetry.latched);
+        return Some(Event { code, words, t_s, lasted_s, stops: true, latched, foot_turned_rad });
     }
     let dark = telemetry.darkness;
     if waits || dark.contains(Darkness::Planned) || dark.contains(Darkness::Disarmed) {
@@ -113,7 +120,8 @@ fn trouble(telemetry: &Telemetry, waits: bool) -> Option<Event> {
     let jolted = dark.contains(Darkness::Jolted).then_some(Darkness::Jolted);
     let reason = jolted.or_else(|| Darkness::ALL.into_iter().find(|&reason| dark.contains(reason)))?;
     let (code, words) = (reason.code(), reason.words());
-    Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: false, foot_turned_rad: None })
+    let lasted_s = TICK_F64_S;
+    Some(Event { code, words, t_s, lasted_s, stops: false, latched: None, foot_turned_rad: None })
 }
 
 /// All events of a run in time order; an event's length runs to the tick before the light was allowed again.
@@ -137,6 +145,7 @@ pub fn events(run: &Run) -> Vec<Event> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixture::latched;
     use tracelight_rig::DarknessSet;
     use tracelight_sim::Tick;
 
@@ -145,7 +154,12 @@ mod tests {
             let mut darkness = DarknessSet::default();
             set.iter().for_each(|&reason| darkness.insert_if(true, reason));
             let fault = (i >= fault_from).then_some(Fault::EncoderDead);
-            let telemetry = Telemetry { tick: i as u32, darkness, fault, ..Telemetry::default() };
+            let telemetry = Telemetry {
+                tick: i as u32,
+                darkness,
+                latched: fault.and_then(latched),
+                ..Telemetry::default()
+            };
             Tick {
                 telemetry,
                 angle_rad: Default::default(),

@@ -4,7 +4,8 @@ use tracelight_maths::planar;
 use tracelight_picture::Raster;
 use tracelight_pipeline::{DistanceFrom, Standing};
 use tracelight_rig::{
-    Actuation, Darkness, DarknessSet, Inputs, Measurement, PanTilt, Phase, Setpoint, TICK_F64_S, Telemetry,
+    Actuation, Darkness, DarknessSet, Fault, FaultRecord, Inputs, Measurement, PanTilt, Phase, Setpoint,
+    TICK_F64_S, Telemetry,
 };
 use tracelight_sim::{Run, Tick, Tracking};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
@@ -240,6 +241,7 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
         velocity_rad_s: PanTilt::default(),
         acceleration_rad_s2: PanTilt::default(),
         lost_counts: PanTilt::default(),
+        latched: None,
         foot_turned_rad: None,
         actuation: Actuation {
             command_v: planned.torque_fraction.map(|f| f * 10.0 + (t * 400.0).sin() as f32 * 0.3),
@@ -250,7 +252,6 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
         homed: true,
         fault_number: 0,
         phase: Phase::Tracing,
-        fault: None,
     };
     Tick {
         telemetry,
@@ -260,4 +261,9 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
         asked: Some(planned.spot),
         light: planned.lit,
     }
+}
+
+/// A fault that was latched in the first tick, shown by nothing but itself.
+pub(crate) fn latched(fault: Fault) -> Option<FaultRecord> {
+    Some(FaultRecord { fault, number: 1, tick: 0, joint: None, exceeded: None })
 }

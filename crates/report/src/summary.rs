@@ -3,7 +3,7 @@
 use serde::Serialize;
 use tracelight_eye::figures::EyeFigures;
 use tracelight_pipeline::{AlignFigures, LeftOut, QualityFigures, Standing};
-use tracelight_rig::TICK_F64_S;
+use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::Run;
 use tracelight_stroke::Drawing;
 use tracelight_trajectory::Plan;
@@ -146,6 +146,16 @@ pub struct FaultFigures {
     pub t_s: f64,
     pub lasted_s: f64,
     pub stops: bool,
+    /// Joint that showed it, where one did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint: Option<&'static str>,
+    /// What was measured of a fault, what it may be, and the unit of both, where that is a number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bound: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<&'static str>,
     /// How far what the head stands on was turned, about the head's x, y and z (ahead, left, up), by its gyroscope.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub foot_turned_deg: Option<[f64; 3]>,
@@ -219,11 +229,16 @@ impl Summary {
 
 impl FaultFigures {
     fn new(event: &Event) -> Self {
+        let told = event.latched.and_then(|record| record.told());
         Self {
             code: event.code,
             t_s: round(event.t_s),
             lasted_s: round(event.lasted_s),
             stops: event.stops,
+            joint: event.latched.and_then(|record| record.joint).map(Joint::name),
+            value: told.map(|told| round(told.value.into())),
+            bound: told.map(|told| round(told.bound.into())),
+            unit: told.map(|told| told.unit),
             foot_turned_deg: event
                 .foot_turned_rad
                 .map(|axes| axes.map(|rad| round(f64::from(rad).to_degrees()))),

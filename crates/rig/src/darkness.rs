@@ -186,6 +186,11 @@ impl DarknessSet {
     pub const fn bits(self) -> u16 {
         self.0
     }
+
+    /// Of these bits; those of no reason are kept.
+    pub const fn from_bits(bits: u16) -> Self {
+        Self(bits)
+    }
 }
 
 #[cfg(test)]

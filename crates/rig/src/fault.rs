@@ -1,11 +1,13 @@
 //! Faults, and the table that lists them all.
 
+mod record;
 mod row;
 
+pub use record::{Evidence, Exceeded, FaultRecord, Measure, Told};
 pub use row::{Clears, Motors, Soon};
 
 /// One row of [`Fault::TABLE`]: all that is known of a fault but how it is looked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FaultRow {
     /// Which it is.
@@ -20,6 +22,8 @@ pub struct FaultRow {
     pub seen: &'static str,
     /// How soon.
     pub soon: Soon,
+    /// What is measured of it.
+    pub measure: Measure,
     /// What becomes of the motors. The laser is dark from the tick on in which any fault is seen.
     pub motors: Motors,
     /// Whether counts may have been lost or made up: where the head stands is not known any more.
@@ -73,6 +77,7 @@ faults! {
         code: "encoder-jumped",
         seen: "over one and a half counts beside the count the joint is expected on",
         soon: Soon::InTheTick,
+        measure: Measure::counts("from where the joint was expected"),
         motors: Motors::Off,
         loses_counts: true,
         clears: Clears::FoundAndArmed,
@@ -83,6 +88,7 @@ faults! {
         code: "encoder-dead",
         seen: "four counts of motion predicted, none counted, whether or not the last load still acts",
         soon: Soon::DarkThen(20),
+        measure: Measure::counts("that the joint must have gone, and none counted"),
         motors: Motors::Off,
         loses_counts: true,
         clears: Clears::FoundAndArmed,
@@ -93,6 +99,7 @@ faults! {
         code: "encoder-noisy",
         seen: "surprises of three counts together within some 50 ticks, or three lost counts within some seconds",
         soon: Soon::InTheTick,
+        measure: Measure::counts("made up or lost of late"),
         motors: Motors::Off,
         loses_counts: true,
         clears: Clears::FoundAndArmed,
@@ -103,6 +110,7 @@ faults! {
         code: "encoder-slipping",
         seen: "surprises that the model cannot explain add up, or the encoder's scale has changed: dark at once; five test moves in the dark then show the same",
         soon: Soon::Words("dark at once, a fault after five test moves, some 2 s"),
+        measure: Measure::share("beside the scale that was found first"),
         motors: Motors::Off,
         loses_counts: true,
         clears: Clears::FoundAndArmed,
@@ -113,6 +121,7 @@ faults! {
         code: "setpoints-stale",
         seen: "no segment for this tick, and the end of the job was not told",
         soon: Soon::InTheTick,
+        measure: Measure::NONE,
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
@@ -123,6 +132,7 @@ faults! {
         code: "setpoint-invalid",
         seen: "a segment comes that leaves a joint's limits of angle, speed or acceleration anywhere, lets it stray further than any may, does not join the one before it, or is no number",
         soon: Soon::Words("when it comes, before its time"),
+        measure: Measure::NONE,
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
@@ -133,6 +143,7 @@ faults! {
         code: "limit-reached",
         seen: "a joint is believed outside its range, three counts beyond its end",
         soon: Soon::InTheTick,
+        measure: Measure::angle("where the joint is believed"),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
@@ -143,6 +154,7 @@ faults! {
         code: "hold-timed-out",
         seen: "the head is off its stroke, dark, and not back",
         soon: Soon::Words("after control.hold_limit"),
+        measure: Measure::ticks("off its stroke"),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
@@ -153,6 +165,7 @@ faults! {
         code: "amplifier-saturated",
         seen: "an amplifier is at its limit, one way",
         soon: Soon::Ticks(300),
+        measure: Measure::ticks("at its limit"),
         motors: Motors::Off,
         loses_counts: false,
         clears: Clears::Armed,
@@ -163,6 +176,7 @@ faults! {
         code: "motor-hot",
         seen: "I²t over what the motor stands",
         soon: Soon::InTheTick,
+        measure: Measure::share("of the heat that full drive makes"),
         motors: Motors::Off,
         loses_counts: false,
         clears: Clears::Armed,
@@ -173,6 +187,7 @@ faults! {
         code: "laser-stuck",
         seen: "the gate's switch is watched, and is closed, or light is seen, after a switch that was told to open must have; at any time, armed or not",
         soon: Soon::Ticks(3),
+        measure: Measure::NONE,
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
@@ -183,6 +198,7 @@ faults! {
         code: "host-lost",
         seen: "a host that has said that it is there says so no more",
         soon: Soon::Words("dark after control.host_silence, a fault after control.host_lost"),
+        measure: Measure::ticks("of silence"),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
@@ -193,6 +209,7 @@ faults! {
         code: "estimate-diverged",
         seen: "six counts between speed believed and counted, over some 20 ticks",
         soon: Soon::InTheTick,
+        measure: Measure::counts("between the speed believed and what was counted"),
         motors: Motors::Off,
         loses_counts: true,
         clears: Clears::FoundAndArmed,
@@ -203,6 +220,7 @@ faults! {
         code: "not-a-number",
         seen: "an edge's stamp, an estimate or a law's result is no number",
         soon: Soon::InTheTick,
+        measure: Measure::NONE,
         motors: Motors::Off,
         loses_counts: true,
         clears: Clears::FoundAndArmed,
@@ -213,6 +231,7 @@ faults! {
         code: "emergency-stop",
         seen: "the input is open",
         soon: Soon::InTheTick,
+        measure: Measure::NONE,
         motors: Motors::Off,
         loses_counts: false,
         clears: Clears::FineAndArmed,
@@ -223,6 +242,7 @@ faults! {
         code: "interlock-open",
         seen: "the input is open",
         soon: Soon::InTheTick,
+        measure: Measure::NONE,
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::FineAndArmed,
@@ -233,6 +253,7 @@ faults! {
         code: "key-off",
         seen: "the input is open",
         soon: Soon::InTheTick,
+        measure: Measure::NONE,
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::FineAndArmed,
@@ -243,6 +264,7 @@ faults! {
         code: "amplifier-fault",
         seen: "the input of either joint is open",
         soon: Soon::InTheTick,
+        measure: Measure::NONE,
         motors: Motors::Off,
         loses_counts: false,
         clears: Clears::FineAndArmed,
@@ -253,6 +275,7 @@ faults! {
         code: "supply-low",
         seen: "the input is open",
         soon: Soon::InTheTick,
+        measure: Measure::NONE,
         motors: Motors::Off,
         loses_counts: false,
         clears: Clears::FineAndArmed,
@@ -263,6 +286,7 @@ faults! {
         code: "too-hot",
         seen: "the input is open",
         soon: Soon::InTheTick,
+        measure: Measure::NONE,
         motors: Motors::Off,
         loses_counts: false,
         clears: Clears::FineAndArmed,
@@ -273,6 +297,7 @@ faults! {
         code: "tick-late",
         seen: "the hardware measures it, and a tick took more than one and a half times its length",
         soon: Soon::InTheTick,
+        measure: Measure::ticks("that a tick took"),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
@@ -283,6 +308,7 @@ faults! {
         code: "light-stood",
         seen: "a plan asks for light where the light budget is spent, which darkens at once",
         soon: Soon::DarkThen(100),
+        measure: Measure::ticks("asked for in vain"),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
@@ -293,6 +319,7 @@ faults! {
         code: "encoder-scale",
         seen: "before the first light, five test moves in the dark show an angle beyond control.scale_tolerance from what the motor must have made",
         soon: Soon::Words("dark from the start, a fault after five test moves, some 2 s"),
+        measure: Measure::share("beside what the motor must have made"),
         motors: Motors::Off,
         loses_counts: true,
         clears: Clears::FoundAndArmed,
@@ -303,6 +330,7 @@ faults! {
         code: "bumped",
         seen: "a gyroscope on the foot says that it has turned further than safety.turned, once it is still again; without one, a joint was thrown aside on a lit stroke by one and a quarter counts or more within some hundredths of a second and is no faster afterwards",
         soon: Soon::Words("dark in the tick with a gyroscope, a fault 0.2 s after it is still; without one, 65 ms after the first surprise"),
+        measure: Measure::angle("that the foot has turned"),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
@@ -313,6 +341,7 @@ faults! {
         code: "laser-dark",
         seen: "the gate's switch is watched, and is open, or light is watched, and none is seen, after all that was told to close must have",
         soon: Soon::Ticks(3),
+        measure: Measure::NONE,
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,

@@ -62,6 +62,14 @@ impl Input {
         }
     }
 
+    /// The joint that it belongs to, if any.
+    pub const fn joint(self) -> Option<Joint> {
+        match self {
+            Input::Amplifier(joint) => Some(joint),
+            _ => None,
+        }
+    }
+
     /// Its bit in each of the two sets.
     const fn bit(self) -> u8 {
         match self {
@@ -103,14 +111,30 @@ impl Inputs {
         }
     }
 
+    /// Those there are, a bit each in the order of [`Input::ALL`].
+    pub const fn present_bits(self) -> u8 {
+        self.present
+    }
+
+    /// Those that say stop, a bit each in the same order.
+    pub const fn open_bits(self) -> u8 {
+        self.open
+    }
+
+    /// Of inputs of which these are there, what they say when these bits say stop; of one that is not there nothing is said.
+    #[must_use]
+    pub const fn opened_by(self, open_bits: u8) -> Self {
+        Self { present: self.present, open: open_bits & self.present }
+    }
+
     /// Whether any of them says stop.
     pub const fn any_open(self) -> bool {
         self.open != 0
     }
 
-    /// The faults that those mean which say stop, in the order of [`Input::ALL`].
-    pub fn faults(self) -> impl Iterator<Item = Fault> {
-        Input::ALL.into_iter().filter(move |&input| self.open & input.bit() != 0).map(Input::fault)
+    /// Those that say stop, in the order of [`Input::ALL`].
+    pub fn opened(self) -> impl Iterator<Item = Input> {
+        Input::ALL.into_iter().filter(move |&input| self.open & input.bit() != 0)
     }
 }
 
@@ -135,11 +159,11 @@ mod tests {
     #[test]
     fn each_input_opens_by_itself_into_a_fault_that_waits_for_it() {
         let fine = Input::ALL.into_iter().fold(Inputs::ABSENT, |all, i| all.with(i, InputState::Fine));
-        assert!(!fine.any_open() && fine.faults().next().is_none());
+        assert!(!fine.any_open() && fine.opened().next().is_none());
         for input in Input::ALL {
             let open = fine.with(input, InputState::Open);
             assert!(open.any_open());
-            assert!(open.faults().eq([input.fault()]), "{input:?}");
+            assert!(open.opened().eq([input]), "{input:?}");
             let row = input.fault().row();
             assert_eq!(row.clears, Clears::FineAndArmed, "{input:?}");
             let holds = matches!(input, Input::Lid | Input::Key);

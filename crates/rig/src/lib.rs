@@ -26,7 +26,7 @@ mod telemetry;
 
 pub use darkness::{Darkness, DarknessRow, DarknessSet};
 pub use exchange::{Actuation, Measurement, Sensed};
-pub use fault::{Clears, Fault, FaultRow, Motors, Soon};
+pub use fault::{Clears, Evidence, Exceeded, Fault, FaultRecord, FaultRow, Measure, Motors, Soon, Told};
 pub use head::{Head, Rig};
 pub use inputs::{Input, InputState, Inputs};
 pub use joint::{Joint, JointLimits, PanTilt};

@@ -1,4 +1,4 @@
-use crate::{Actuation, DarknessSet, Fault, Inputs, Measurement, PanTilt, Setpoint};
+use crate::{Actuation, DarknessSet, Fault, FaultRecord, Inputs, Measurement, PanTilt, Setpoint};
 
 /// Where the supervisor stands.
 ///
@@ -30,6 +30,12 @@ pub enum Phase {
     Done,
     /// A fault is latched.
     Faulted,
+}
+
+impl Phase {
+    /// Every phase, in the order of their numbers on a wire, from 0.
+    pub const ALL: [Self; 7] =
+        [Self::Dark, Self::Armed, Self::Tracing, Self::Holding, Self::Testing, Self::Done, Self::Faulted];
 }
 
 /// One tick as the controller saw it.
@@ -65,9 +71,16 @@ pub struct Telemetry {
     pub homed: bool,
     /// Supervisor's state.
     pub phase: Phase,
-    /// The latched fault, if any.
-    pub fault: Option<Fault>,
+    /// The latched fault, if any: the first since somebody armed.
+    pub latched: Option<FaultRecord>,
     /// How many faults were latched since power-up; 0 for none. While one is latched, each other kind that comes counts once. What
     /// [`Command::Arm`](crate::Command::Arm) acknowledges.
     pub fault_number: u32,
+}
+
+impl Telemetry {
+    /// Which fault is latched, if any.
+    pub fn fault(&self) -> Option<Fault> {
+        self.latched.map(|record| record.fault)
+    }
 }

@@ -388,7 +388,7 @@ mod tests {
         assert!(based(&control("tolerance", "50mm")).is_ok());
         let silence = error(&control("host_silence", "1.01s"));
         assert!(silence.contains("must be from 0.005s to 1s"), "{silence}");
-        let lost = error("[control]\nhost_silence = \"0.5s\"\nhost_lost = \"0.4s\"\n");
+        let lost = refused("[control]\nhost_silence = \"0.5s\"\nhost_lost = \"0.4s\"\n");
         assert!(lost.contains("host_lost must be no less than host_silence"), "{lost}");
         let tolerance = error(&control("tolerance", "51mm"));
         assert!(tolerance.contains("must be from 0.00001m to 0.05m"), "{tolerance}");

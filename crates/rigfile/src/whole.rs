@@ -12,11 +12,12 @@ pub(crate) const BASE: &str = "base";
 
 /// Keys, or beginnings of keys, that came when rig files without them were about already. A file that has none of a row is older
 /// than the row, not cut off: what is written today ends with keys that are older than all of them.
-const CAME_LATER: [&str; 7] = [
+const CAME_LATER: [&str; 8] = [
     "model.enable.",
     "model.foot.",
     "truth.gyroscope.",
     "control.scale_tolerance",
+    "control.host_lost",
     "laser.",
     "safety.jolt",
     "safety.turned",
@@ -201,7 +202,7 @@ mod tests {
         assert_eq!(file.rig, RigConfig::report());
         let remark = file.remark.unwrap();
         assert!(
-            remark.contains("older than 13 of today's keys (model.enable.on to safety.turned)"),
+            remark.contains("older than 14 of today's keys (model.enable.on to safety.turned)"),
             "{remark}"
         );
         assert_eq!(read("new.toml", whole.clone().into_bytes()).unwrap().remark, None);

@@ -1,4 +1,4 @@
-use tracelight_rig::{Fault, TICK_F64_S};
+use tracelight_rig::{FaultRecord, TICK_F64_S};
 
 use crate::request::Refused;
 use crate::state::State;
@@ -37,12 +37,7 @@ pub enum Event {
         why: Refused,
     },
     /// A fault was latched.
-    Fault {
-        /// Tick of the rig.
-        tick: u32,
-        /// The fault.
-        fault: Fault,
-    },
+    Fault(FaultRecord),
 }
 
 /// Where a session stands.

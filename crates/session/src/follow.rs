@@ -12,11 +12,11 @@ const ANSWER_TICKS: u32 = 250;
 impl<R: Rig> Session<R> {
     /// What the last tick means for the state.
     pub(crate) fn follow(&mut self) {
-        let Telemetry { tick, fault, homed, .. } = self.told;
-        if let Some(fault) = fault {
+        let Telemetry { tick, latched, homed, .. } = self.told;
+        if let Some(record) = latched {
             self.next = None;
             if self.state != State::Fault {
-                self.tell(Event::Fault { tick, fault });
+                self.tell(Event::Fault(record));
                 self.enter(State::Fault);
             }
             return;

@@ -1,6 +1,7 @@
 //! Events and snapshots for scripts and pages: one object each.
 
 use serde_json::{Value, json};
+use tracelight_rig::Joint;
 
 use crate::event::{Event, Snapshot, seconds};
 
@@ -17,9 +18,14 @@ pub fn event_json(event: &Event) -> Value {
         Event::NotBegun { tick, why } => {
             json!({"event": "refused", "t_s": seconds(tick), "message": why.to_string()})
         }
-        Event::Fault { tick, fault } => json!({
-            "event": "fault", "t_s": seconds(tick), "code": fault.code(), "message": fault.row().what,
-        }),
+        Event::Fault(record) => {
+            let told = record.told();
+            json!({
+                "event": "fault", "t_s": seconds(record.tick), "code": record.fault.code(), "message": record.fault.row().what,
+                "joint": record.joint.map(Joint::name), "value": told.map(|told| told.value), "bound": told.map(|told| told.bound),
+                "unit": told.map(|told| told.unit),
+            })
+        }
     }
 }
 

@@ -4,7 +4,8 @@ use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_control::{Controller, Estimate, State};
 use tracelight_plant::Plant;
 use tracelight_rig::{
-    Actuation, Command, Fault, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, TICK_F64_S, Telemetry,
+    Actuation, Command, Fault, FaultRecord, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, TICK_F64_S,
+    Telemetry,
 };
 use tracelight_session::{Feeder, Job, Session, StrokeTicks, Trim, Untrimmed};
 use tracelight_stroke::Point;
@@ -63,7 +64,12 @@ impl Run {
 
     /// The fault it ended with, if any.
     pub fn fault(&self) -> Option<Fault> {
-        self.ticks.last().and_then(|tick| tick.telemetry.fault)
+        self.latched().map(|record| record.fault)
+    }
+
+    /// The same with what showed it.
+    pub fn latched(&self) -> Option<FaultRecord> {
+        self.ticks.last().and_then(|tick| tick.telemetry.latched)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use tracelight_rig::Fault;
+use tracelight_rig::FaultRecord;
 
 use crate::place::Place;
 
@@ -68,8 +68,11 @@ impl Failure {
 
     /// The rig latched a fault.
     #[must_use]
-    pub fn fault(fault: Fault) -> Self {
-        let message = format!("the laser darkened and the run stopped: {} ({})", fault.code(), fault.words());
+    pub fn fault(record: FaultRecord) -> Self {
+        let (fault, evidence) = (record.fault, record.evidence());
+        let shown = if evidence.is_empty() { String::new() } else { format!(": {evidence}") };
+        let message =
+            format!("the laser darkened and the run stopped: {}{shown} ({})", fault.code(), fault.words());
         Self { status: Status::Fault, code: fault.code(), message }
     }
 

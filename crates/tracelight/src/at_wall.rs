@@ -221,7 +221,7 @@ impl Hands for AtWall<'_> {
             // who starts the program has armed it
             Event::State { tick: 0, .. } => None,
             // what the camera has the head do is nobody's to go on with, and who ends it knows
-            Event::State { .. } | Event::Fault { .. } if self.look.is_some() || self.stop.is_wanted() => None,
+            Event::State { .. } | Event::Fault(_) if self.look.is_some() || self.stop.is_wanted() => None,
             Event::State { to: State::Armed, .. } if !self.arms => None,
             Event::State { to: State::Pausing, .. } if self.at_once => None,
             Event::State { to, .. } => words(to).map(str::to_owned),
@@ -229,8 +229,10 @@ impl Hands for AtWall<'_> {
                 (self.steps && !self.points).then(|| format!("stroke {} of {of}", stroke + 1))
             }
             Event::NotBegun { why, .. } => Some(why.to_string()),
-            Event::Fault { fault, .. } => {
-                Some(format!("fault {}: {} (C clears it)", fault.code(), fault.row().what))
+            Event::Fault(record) => {
+                let (fault, shown) = (record.fault, record.evidence());
+                let shown = if shown.is_empty() { String::new() } else { format!(" Shown by {shown}.") };
+                Some(format!("fault {}: {}{shown} (C clears it)", fault.code(), fault.row().what))
             }
         };
         self.arms &= !matches!(event, Event::State { to: State::Armed, .. });

@@ -2,6 +2,7 @@ use tracelight_rig::{Fault, Measurement, TICK_S};
 
 use crate::axis::AxisConfig;
 use crate::estimate::{Effort, Estimate};
+use crate::finding::Finding;
 use crate::limit::within;
 
 /// Share of Coulomb friction that must be overcome before a joint is expected to move: stiction and ripple of worn
@@ -70,28 +71,35 @@ impl EncoderWatch {
         effort: &Effort,
         estimate: &Estimate,
         measured: &Measurement,
-    ) -> Option<Fault> {
+    ) -> Option<Finding> {
         let moved = measured.count.wrapping_sub(self.count);
         self.count = measured.count;
         let before = core::mem::replace(&mut self.believed, *estimate);
         let surprise = surprise_counts(axis, &before, before.count(measured));
         if surprise > JUMP_COUNTS {
-            return Some(Fault::EncoderJumped);
+            return Some(Finding::beyond(Fault::EncoderJumped, surprise, JUMP_COUNTS));
         }
         let back = moved.signum() * self.expected.way < 0;
         self.surprises -= NOISE_FADES * self.surprises;
         self.surprises += if back && surprise > SURPRISE_COUNTS { surprise } else { 0.0 };
         let put_back = estimate.lost_counts.wrapping_sub(before.lost_counts).unsigned_abs();
         self.put_back += put_back as f32 - BAD_FADES * self.put_back;
-        if self.surprises > NOISE_COUNTS || self.put_back > BAD_COUNTS {
-            return Some(Fault::EncoderNoisy);
+        if self.surprises > NOISE_COUNTS {
+            return Some(Finding::beyond(Fault::EncoderNoisy, self.surprises, NOISE_COUNTS));
+        }
+        if self.put_back > BAD_COUNTS {
+            return Some(Finding::beyond(Fault::EncoderNoisy, self.put_back, BAD_COUNTS));
         }
         self.recounts = estimate.is_doubtful;
         self.doubt(axis, effort, estimate, moved);
         if self.doubtful_ticks > DOUBT_TICKS {
-            return Some(Fault::EncoderDead);
+            let counts = self.expected.travel_rad.abs() / axis.count_rad;
+            return Some(Finding::beyond(Fault::EncoderDead, counts, DOUBT_COUNTS));
         }
-        self.has_diverged(axis, estimate, moved).then_some(Fault::EstimateDiverged)
+        self.watch_gap(axis, estimate, moved);
+        let (gap_rad, most_rad) = (self.gap_rad.abs(), DIVERGED_COUNTS * axis.count_rad);
+        (gap_rad > most_rad)
+            .then(|| Finding::beyond(Fault::EstimateDiverged, gap_rad / axis.count_rad, DIVERGED_COUNTS))
     }
 
     /// Whether the laser is better dark until an edge comes.
@@ -112,10 +120,9 @@ impl EncoderWatch {
         self.doubtful_ticks = if missing { self.doubtful_ticks.saturating_add(1) } else { 0 };
     }
 
-    fn has_diverged(&mut self, axis: &AxisConfig, estimate: &Estimate, moved: i32) -> bool {
+    fn watch_gap(&mut self, axis: &AxisConfig, estimate: &Estimate, moved: i32) {
         self.gap_rad -= DIVERGENCE_FADES * self.gap_rad;
         self.gap_rad += estimate.velocity_rad_s * TICK_S - moved as f32 * axis.count_rad;
-        self.gap_rad.abs() > DIVERGED_COUNTS * axis.count_rad
     }
 }
 

@@ -2,6 +2,8 @@
 
 use tracelight_rig::{Fault, Joint, PanTilt, TICK_S};
 
+use crate::finding::Finding;
+
 /// Limits and model of the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
@@ -102,7 +104,7 @@ impl FootWatch {
         foot: &Foot,
         read_rad_s: Option<[f32; 3]>,
         sped_up: PanTilt<f32>,
-    ) -> Option<Fault> {
+    ) -> Option<Finding> {
         let Some(read_rad_s) = read_rad_s else {
             // one that says nothing any more has not said that all is well
             (self.jolted, self.quiet_ticks) = (self.fitted, 0);
@@ -110,7 +112,7 @@ impl FootWatch {
         };
         self.fitted = true;
         if !read_rad_s.iter().all(|rate| rate.is_finite()) {
-            return Some(Fault::NotANumber);
+            return Some(Finding::of(Fault::NotANumber));
         }
         let swings = self.swing(foot, sped_up);
         let mut rate_rad_s = [0.0; 3];
@@ -148,7 +150,7 @@ impl FootWatch {
         }
     }
 
-    fn watch(&mut self, foot: &Foot, rate_rad_s: [f32; 3]) -> Option<Fault> {
+    fn watch(&mut self, foot: &Foot, rate_rad_s: [f32; 3]) -> Option<Finding> {
         let unsure = |of: fn(&Swing) -> f32| SWAY_SHARE * of(&self.swings.pan).max(of(&self.swings.tilt));
         let most_rad_s = foot.jolt_rad_s + unsure(|swing| swing.fastest_rad_s);
         let bias_s = TURN_S * BIAS_TICKS as f32 / self.bias_ticks as f32;
@@ -165,7 +167,8 @@ impl FootWatch {
             }
         }
         let turns = largest(&rate_rad_s) > most_rad_s;
-        let turned = largest(&self.turned_rad) > most_rad;
+        let turned_rad = largest(&self.turned_rad);
+        let turned = turned_rad > most_rad;
         self.jolted |= turns || turned;
         if !self.jolted {
             return None;
@@ -176,7 +179,7 @@ impl FootWatch {
             return None;
         }
         (self.jolted, self.quiet_ticks) = (false, 0);
-        turned.then_some(Fault::Bumped)
+        turned.then(|| Finding::beyond(Fault::Bumped, turned_rad, most_rad))
     }
 
     /// How fast the head's own motion should turn the foot now, rad/s about x, y and z.
@@ -213,7 +216,7 @@ mod tests {
     const STILL: PanTilt<f32> = PanTilt::new(0.0, 0.0);
     const BIAS: [f32; 3] = [0.004, -0.003, 0.002];
 
-    fn read(watch: &mut FootWatch, rate: f32, ticks: u32) -> Option<Fault> {
+    fn read(watch: &mut FootWatch, rate: f32, ticks: u32) -> Option<Finding> {
         let read = [BIAS[0], BIAS[1], BIAS[2] + rate];
         (0..ticks).fold(None, |fault, _| fault.or(watch.tick(&FOOT, Some(read), STILL)))
     }
@@ -232,7 +235,10 @@ mod tests {
         let mut gone = known();
         gone.tick(&FOOT, None, STILL);
         assert!(!gone.is_steady());
-        assert_eq!(known().tick(&FOOT, Some([f32::NAN, 0.0, 0.0]), STILL), Some(Fault::NotANumber));
+        assert_eq!(
+            known().tick(&FOOT, Some([f32::NAN, 0.0, 0.0]), STILL),
+            Some(Finding::of(Fault::NotANumber))
+        );
     }
 
     #[test]
@@ -250,7 +256,7 @@ mod tests {
         read(&mut early, 0.1, 30);
         assert_eq!(read(&mut early, 0.0, BIAS_TICKS - 1), None);
         assert!(!early.is_steady());
-        assert_eq!(read(&mut early, 0.0, 2 * QUIET_TICKS), Some(Fault::Bumped));
+        assert_eq!(read(&mut early, 0.0, 2 * QUIET_TICKS).map(|found| found.fault), Some(Fault::Bumped));
     }
 
     #[test]
@@ -259,7 +265,7 @@ mod tests {
         read(&mut bumped, 0.2, 1);
         assert!(!bumped.is_steady(), "in the tick");
         read(&mut bumped, 0.2, 19);
-        assert_eq!(read(&mut bumped, 0.0, 2 * QUIET_TICKS), Some(Fault::Bumped));
+        assert_eq!(read(&mut bumped, 0.0, 2 * QUIET_TICKS).map(|found| found.fault), Some(Fault::Bumped));
         let mut came_back = known();
         read(&mut came_back, 0.2, 20);
         read(&mut came_back, -0.2, 20);
@@ -272,7 +278,7 @@ mod tests {
     fn a_slow_turn_is_one_too_and_a_bias_that_drifts_is_none() {
         let mut sinks = known();
         read(&mut sinks, 0.0, FOLLOWED_TICKS);
-        assert_eq!(read(&mut sinks, 0.002, 500), Some(Fault::Bumped));
+        assert_eq!(read(&mut sinks, 0.002, 500).map(|found| found.fault), Some(Fault::Bumped));
         let mut warms = known();
         for k in 0..60_000_u16 {
             assert_eq!(read(&mut warms, 1e-8 * f32::from(k), 1), None);

@@ -3,6 +3,7 @@
 use tracelight_rig::{Actuation, Fault, Sensed};
 
 use crate::config::Config;
+use crate::finding::Finding;
 
 /// Ticks a laser may take longer than its switch.
 pub(super) const SLACK_TICKS: u32 = 2;
@@ -75,16 +76,16 @@ impl LaserWatch {
 
     /// What is seen of the switches that they were not told, if anything. Light tells of both: one that was told long enough ago to open lets none
     /// through.
-    pub(crate) fn sense(&self, config: &Config, sensed: &Sensed) -> Option<Fault> {
+    pub(crate) fn sense(&self, config: &Config, sensed: &Sensed) -> Option<Finding> {
         let (gate, enable) = (self.gate_followed(config), self.enable_followed(config));
         let (is_open, is_closed) = (gate && !self.gate.on, gate && self.gate.on);
         let is_dark = is_open || (enable && !self.enable.on);
         let is_lit = is_closed && enable && self.enable.on;
         if (is_open && sensed.laser_on == Some(true)) || (is_dark && sensed.light == Some(true)) {
-            return Some(Fault::LaserStuck);
+            return Some(Finding::of(Fault::LaserStuck));
         }
         let missing =
             (is_closed && sensed.laser_on == Some(false)) || (is_lit && sensed.light == Some(false));
-        missing.then_some(Fault::LaserDark)
+        missing.then_some(Finding::of(Fault::LaserDark))
     }
 }

@@ -15,6 +15,7 @@ use tracelight_rig::{Fault, Joint, PanTilt, Sensed};
 
 use crate::config::Config;
 use crate::estimate::Estimate;
+use crate::finding::Finding;
 use crate::servo::Servo;
 use encoder::EncoderWatch;
 use foot::FootWatch;
@@ -65,18 +66,18 @@ impl Watch {
     }
 
     /// What a tick's senses show of encoders, motors and the host, if anything; what they show of the laser is [`LaserWatch::sense`]'s.
-    pub(crate) fn sense(&mut self, config: &Config, servo: &Servo, sensed: &Sensed) -> Option<Fault> {
+    pub(crate) fn sense(&mut self, config: &Config, servo: &Servo, sensed: &Sensed) -> Option<Finding> {
         // silence is counted whatever else is wrong
         let silence = self.host(config);
         let stamped =
             |j: Joint| sensed.encoders[j].edge_age_ticks.is_none_or(|age| (0.0..1.0).contains(&age));
-        if !Joint::BOTH.iter().all(|&j| stamped(j) && servo.estimates()[j].is_finite()) {
-            return Some(Fault::NotANumber);
+        if let Some(&j) = Joint::BOTH.iter().find(|&&j| !stamped(j) || !servo.estimates()[j].is_finite()) {
+            return Some(Finding::of(Fault::NotANumber).by(j));
         }
-        if sensed.lasted_ticks.is_some_and(is_late) {
+        if let Some(lasted) = sensed.lasted_ticks.filter(|&lasted| is_late(lasted)) {
             // counts of more than a tick say nothing of encoders
             self.encoders = encoders(sensed, servo.estimates());
-            return Some(Fault::TickLate);
+            return Some(Finding::beyond(Fault::TickLate, lasted, LATE_TICKS));
         }
         if config.drive.is_open_loop() {
             let sped_up = servo.estimates().map(|estimate| estimate.acceleration_rad_s2);
@@ -88,18 +89,30 @@ impl Watch {
         };
         let pan = encoder(&mut self.encoders.pan, Joint::Pan);
         let tilt = encoder(&mut self.encoders.tilt, Joint::Tilt);
-        let (mut thrown, lit) = (false, self.laser.lights());
+        let (mut thrown, lit) = (None, self.laser.lights());
         for j in Joint::BOTH {
             let (axis, measured) = (&config.axes[j], &sensed.encoders[j]);
             let (effort, estimate) = (&servo.efforts()[j], &servo.estimates()[j]);
             let surprise = self.scales[j].tick(axis, effort, estimate, measured);
-            thrown |= self.knocks[j].tick(axis, effort, estimate, measured, (surprise, lit));
+            if self.knocks[j].tick(axis, effort, estimate, measured, (surprise, lit)) {
+                thrown = Some(j);
+            }
         }
         let sped_up = servo.estimates().map(|estimate| estimate.acceleration_rad_s2);
         let turned = self.foot.tick(&config.foot, sensed.foot_rad_s, sped_up);
         // who has a gyroscope need not ask encoders
-        let thrown = (thrown && !self.foot.is_fitted()).then_some(Fault::Bumped);
-        pan.or(tilt).or(silence).or(turned).or(thrown)
+        let thrown = thrown.filter(|_| !self.foot.is_fitted()).map(|j| Finding::of(Fault::Bumped).by(j));
+        // one by one: copies of what is rarely there take time in every tick
+        if let Some(found) = pan {
+            return Some(found.by(Joint::Pan));
+        }
+        if let Some(found) = tilt {
+            return Some(found.by(Joint::Tilt));
+        }
+        if silence.is_some() {
+            return silence;
+        }
+        if turned.is_some() { turned } else { thrown }
     }
 
     /// Whether an encoder has shown nothing where its joint should have passed several edges, or does not fit its motor.
@@ -128,22 +141,23 @@ impl Watch {
     }
 
     /// Ends the test move and returns the fault it showed, if any.
-    pub(crate) fn end_test(&mut self, config: &Config) -> Option<Fault> {
-        let faults = PanTilt::from_fn(|j| self.scales[j].end_test(&config.axes[j]));
+    pub(crate) fn end_test(&mut self, config: &Config) -> Option<Finding> {
+        let faults = PanTilt::from_fn(|j| self.scales[j].end_test(&config.axes[j]).map(|found| found.by(j)));
         faults.pan.or(faults.tilt)
     }
 
-    fn host(&mut self, config: &Config) -> Option<Fault> {
+    fn host(&mut self, config: &Config) -> Option<Finding> {
         let silence = self.silence_ticks?.saturating_add(1);
         self.silence_ticks = Some(silence);
-        (silence > config.host_lost_ticks).then_some(Fault::HostLost)
+        (silence > config.host_lost_ticks)
+            .then(|| Finding::after(Fault::HostLost, silence, config.host_lost_ticks))
     }
 
     /// What the volts of a tick show, if anything.
-    pub(crate) fn drive(&mut self, config: &Config, command_v: &PanTilt<f32>) -> Option<Fault> {
+    pub(crate) fn drive(&mut self, config: &Config, command_v: &PanTilt<f32>) -> Option<Finding> {
         let faults = PanTilt::from_fn(|j| {
             let axis = &config.axes[j];
-            self.motors[j].tick(&axis.rating, command_v[j] / axis.limit_v)
+            self.motors[j].tick(&axis.rating, command_v[j] / axis.limit_v).map(|found| found.by(j))
         });
         faults.pan.or(faults.tilt)
     }

@@ -1,5 +1,7 @@
 use tracelight_rig::{Fault, TICK_S};
 
+use crate::finding::Finding;
+
 /// Share of an amplifier's limit from which on it is saturated.
 const SATURATED: f32 = 0.999;
 /// For how long an amplifier may give all it has in one direction, ticks: the longest move of a joint at full torque,
@@ -27,7 +29,7 @@ pub(super) struct MotorWatch {
 
 impl MotorWatch {
     /// One tick with that share of its amplifier's limit, −1 to 1; the fault it shows, if any.
-    pub(super) fn tick(&mut self, rating: &MotorRating, share: f32) -> Option<Fault> {
+    pub(super) fn tick(&mut self, rating: &MotorRating, share: f32) -> Option<Finding> {
         let (saturated, upwards) = (share.abs() >= SATURATED, share > 0.0);
         let goes_on = saturated && upwards == self.upwards;
         self.saturated_ticks = if goes_on { self.saturated_ticks + 1 } else { u32::from(saturated) };
@@ -35,9 +37,9 @@ impl MotorWatch {
         self.heat += TICK_S / rating.heating_s * (share * share - self.heat);
         let most = rating.continuous_share * rating.continuous_share;
         if self.saturated_ticks > SATURATED_TICKS {
-            Some(Fault::AmplifierSaturated)
+            Some(Finding::after(Fault::AmplifierSaturated, self.saturated_ticks, SATURATED_TICKS))
         } else {
-            (self.heat > most).then_some(Fault::MotorHot)
+            (self.heat > most).then(|| Finding::beyond(Fault::MotorHot, self.heat, most))
         }
     }
 

@@ -5,6 +5,7 @@ use tracelight_rig::{Fault, Measurement};
 use super::scale_filter::{ScaleFilter, Surprise};
 use crate::axis::AxisConfig;
 use crate::estimate::{Effort, Estimate};
+use crate::finding::Finding;
 use crate::limit::within;
 
 /// Standard deviation up to which a scale counts as known.
@@ -151,7 +152,7 @@ impl ScaleWatch {
 
     /// Ends the test move and returns the fault it showed, if any. Several tests must agree: somebody may have pushed, or the supply may
     /// have been weak for a moment.
-    pub(super) fn end_test(&mut self, axis: &AxisConfig) -> Option<Fault> {
+    pub(super) fn end_test(&mut self, axis: &AxisConfig) -> Option<Finding> {
         if self.is_tested() {
             return None;
         }
@@ -170,7 +171,8 @@ impl ScaleWatch {
         let tests = if times > 0 { 0 } else { tests.saturating_add(1) };
         self.trust = Trust::Doubted { tests, shown: scale, times };
         let fault = if self.first.is_some() { Fault::EncoderSlipping } else { Fault::EncoderScale };
-        (times >= TESTS).then_some(fault)
+        let (off, most) = self.off(axis);
+        (times >= TESTS).then(|| Finding::beyond(fault, off, most))
     }
 
     fn add_up(&mut self, surprise: Surprise) {

@@ -1,6 +1,6 @@
 //! How a head goes round of which nobody knows where it points: gently, a joint at a time, and back from whatever is in its way.
 
-use tracelight_rig::{Fault, Joint, PanTilt, Phase, Telemetry};
+use tracelight_rig::{Fault, FaultRecord, Joint, PanTilt, Phase, Telemetry};
 use tracelight_session::{Job, Request, State};
 use tracelight_task::Failure;
 use tracelight_trajectory::turn;
@@ -66,11 +66,11 @@ impl<D: Driven> Homing<'_, D> {
         joint: Joint,
         way_rad: f64,
         tried: &[PanTilt<f64>],
-        fault: Fault,
+        record: FaultRecord,
     ) -> Result<(), Failure> {
         self.stops += 1;
-        if self.stops > MOST_STOPS || !may_be_a_stop(fault) {
-            return Err(Failure::fault(fault));
+        if self.stops > MOST_STOPS || !may_be_a_stop(record.fault) {
+            return Err(Failure::fault(record));
         }
         // it may still go on, and swings back
         let mut end_rad = f64::NEG_INFINITY;
@@ -108,7 +108,11 @@ impl<D: Driven> Homing<'_, D> {
     }
 
     /// Moves in the dark from rest to rest, by its encoders, and rests; the fault that ended it, if one did.
-    pub(super) fn go(&mut self, from: PanTilt<f64>, to: PanTilt<f64>) -> Result<Option<Fault>, Failure> {
+    pub(super) fn go(
+        &mut self,
+        from: PanTilt<f64>,
+        to: PanTilt<f64>,
+    ) -> Result<Option<FaultRecord>, Failure> {
         if from == to {
             return Ok(None);
         }
@@ -122,8 +126,8 @@ impl<D: Driven> Homing<'_, D> {
         let most = 2 * u32::from(turn.ticks) + 5000;
         for _ in 0..most {
             let now = self.tick()?;
-            if now.fault.is_some() {
-                return Ok(now.fault);
+            if now.latched.is_some() {
+                return Ok(now.latched);
             }
             if now.phase == Phase::Done {
                 return self.fault_at_rest();
@@ -134,11 +138,11 @@ impl<D: Driven> Homing<'_, D> {
     }
 
     /// Rests; the fault that shows meanwhile: what is in a joint's way just before its end shows when it pushes there.
-    fn fault_at_rest(&mut self) -> Result<Option<Fault>, Failure> {
+    fn fault_at_rest(&mut self) -> Result<Option<FaultRecord>, Failure> {
         for _ in 0..REST_TICKS {
             let now = self.tick()?;
-            if now.fault.is_some() {
-                return Ok(now.fault);
+            if now.latched.is_some() {
+                return Ok(now.latched);
             }
         }
         Ok(None)
@@ -166,7 +170,7 @@ impl<D: Driven> Homing<'_, D> {
 
     pub(super) fn step(&mut self) -> Result<Telemetry, Failure> {
         let now = self.tick()?;
-        now.fault.map_or(Ok(now), |fault| Err(Failure::fault(fault)))
+        now.latched.map_or(Ok(now), |record| Err(Failure::fault(record)))
     }
 
     /// The same, whatever is wrong with the rig.

@@ -387,7 +387,7 @@ mod tests {
         let path = file("fault");
         let (mut log, fixture) = begun(&path, 10);
         let mut tick = fixture.run.ticks[10];
-        tick.telemetry.fault = Some(Fault::EncoderJumped);
+        tick.telemetry.latched = fixture::latched(Fault::EncoderJumped);
         log.append(&tick, &fixture.plan.points[10]).unwrap();
         log.append(&tick, &fixture.plan.points[11]).unwrap();
         let bytes = finished(log, &path);

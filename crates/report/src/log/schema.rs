@@ -127,7 +127,7 @@ pub(super) fn telemetry(out: &mut Encoder, sample: &Sample<'_>, lap: u32) {
     out.flag(5, seen.actuation.lights());
     out.flag(6, sample.tick.light);
     out.text(7, &reasons(seen.darkness));
-    out.text(8, seen.fault.map_or("", |fault| fault.code()));
+    out.text(8, seen.fault().map_or("", |fault| fault.code()));
     out.message(9, |joint| joint_state(joint, sample.tick, seen, Joint::Pan));
     out.message(10, |joint| joint_state(joint, sample.tick, seen, Joint::Tilt));
     out.unsigned(11, lap.into());

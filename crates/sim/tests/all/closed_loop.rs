@@ -180,8 +180,8 @@ fn a_dead_encoder_is_noticed_and_the_laser_darkens() {
             }
         });
         let last = run.ticks.last().unwrap();
-        assert_eq!(last.telemetry.fault, Some(Fault::EncoderDead), "{joint}");
-        let fault = run.ticks.iter().position(|t| t.telemetry.fault.is_some()).unwrap() as u32;
+        assert_eq!(last.telemetry.fault(), Some(Fault::EncoderDead), "{joint}");
+        let fault = run.ticks.iter().position(|t| t.telemetry.fault().is_some()).unwrap() as u32;
         assert!(fault < when + 100, "{joint}: {} ms", fault - when);
         assert!(!run.ticks[fault as usize].telemetry.actuation.gate);
     }
@@ -196,8 +196,8 @@ fn a_jump_of_the_count_is_a_fault_in_the_same_tick() {
             rig.suffer(Trouble::EncoderJump(Joint::Tilt, 100));
         }
     });
-    let fault = run.ticks.iter().find(|t| t.telemetry.fault.is_some()).unwrap();
-    assert_eq!(fault.telemetry.fault, Some(Fault::EncoderJumped));
+    let fault = run.ticks.iter().find(|t| t.telemetry.fault().is_some()).unwrap();
+    assert_eq!(fault.telemetry.fault(), Some(Fault::EncoderJumped));
     assert!(fault.telemetry.tick <= at + 2 && !fault.telemetry.actuation.gate);
 }
 
@@ -221,8 +221,8 @@ fn segments_that_stop_coming_darken_the_beam() {
         rig.send(Command::Append(segment)).unwrap();
     }
     let ticks: Vec<_> = (0..plan.points.len()).map(|_| alive(&mut rig)).collect();
-    let fault = ticks.iter().find(|t| t.telemetry.fault.is_some()).unwrap();
-    assert_eq!(fault.telemetry.fault, Some(Fault::SetpointsStale));
+    let fault = ticks.iter().find(|t| t.telemetry.fault().is_some()).unwrap();
+    assert_eq!(fault.telemetry.fault(), Some(Fault::SetpointsStale));
     assert_eq!(fault.telemetry.tick, plan.segments[59].end_tick());
     assert!(ticks.iter().skip(fault.telemetry.tick as usize).all(|t| !t.telemetry.actuation.gate));
 }
@@ -236,7 +236,7 @@ fn a_segment_that_does_not_join_is_refused_with_a_fault() {
     rig.send(Command::Append(plan.segments[0])).unwrap();
     let late = Segment { start_tick: plan.segments[1].start_tick + 1, ..plan.segments[1] };
     rig.send(Command::Append(late)).unwrap();
-    assert_eq!(rig.step().telemetry.fault, Some(Fault::SetpointInvalid));
+    assert_eq!(rig.step().telemetry.fault(), Some(Fault::SetpointInvalid));
 }
 
 #[test]
@@ -276,7 +276,7 @@ fn a_segment_without_a_bound_on_its_error_is_refused() {
         let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
         assert!(arm(&mut rig));
         rig.send(Command::Append(Segment { tolerance_rad: PanTilt::new(bound, 1e-3), ..first })).unwrap();
-        assert_eq!(rig.step().telemetry.fault, Some(Fault::SetpointInvalid), "{bound}");
+        assert_eq!(rig.step().telemetry.fault(), Some(Fault::SetpointInvalid), "{bound}");
     }
 }
 

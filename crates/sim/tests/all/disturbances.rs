@@ -174,7 +174,7 @@ fn all(case: &Case) -> (Outcome, Vec<Fault>) {
             if last.phase == Phase::Done {
                 worst = worst.with(&one);
             } else {
-                faults.push(last.fault.unwrap());
+                faults.push(last.fault().unwrap());
                 worst.furthest_mm = worst.furthest_mm.max(one.furthest_mm);
             }
         }

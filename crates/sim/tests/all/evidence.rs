@@ -82,15 +82,19 @@ fn arming_acknowledges_the_faults_there_were_and_no_others() {
     for number in 1..4 {
         rig.send(wild(&plan)).unwrap();
         let now = alive(&mut rig).telemetry;
-        assert_eq!((now.fault, now.fault_number), (Some(Fault::SetpointInvalid), number));
+        assert_eq!((now.fault(), now.fault_number), (Some(Fault::SetpointInvalid), number));
         for acknowledges in [0, number - 1, number + 1, u32::MAX] {
             rig.send(Command::Arm { acknowledges }).unwrap();
             let after = alive(&mut rig).telemetry;
-            assert_eq!((after.fault, after.phase), (now.fault, Phase::Faulted), "{acknowledges} of {number}");
+            assert_eq!(
+                (after.fault(), after.phase),
+                (now.fault(), Phase::Faulted),
+                "{acknowledges} of {number}"
+            );
         }
         rig.send(Command::Arm { acknowledges: number }).unwrap();
         let after = alive(&mut rig).telemetry;
-        assert!(after.fault.is_none() && after.phase != Phase::Faulted && after.fault_number == number);
+        assert!(after.fault().is_none() && after.phase != Phase::Faulted && after.fault_number == number);
         rig.send(Command::Disarm).unwrap();
     }
 }
@@ -105,7 +109,7 @@ fn a_fault_that_lasts_counts_once_and_another_kind_counts_too() {
     rig.suffer(Trouble::EncoderJump(Joint::Pan, 40));
     let after: Vec<Telemetry> = (0..200).map(|_| rig.step().telemetry).collect();
     let last = after.last().unwrap();
-    assert_eq!((last.fault, last.homed), (Some(Fault::HostLost), false));
+    assert_eq!((last.fault(), last.homed), (Some(Fault::HostLost), false));
     assert!(after.windows(2).all(|pair| pair[0].fault_number <= pair[1].fault_number));
     let kinds = last.fault_number;
     assert!((2..5).contains(&kinds), "{kinds}");
@@ -127,7 +131,7 @@ fn after_an_encoder_jumped_arming_alone_never_lights_again() {
         for _ in 0..12 {
             fed(&mut rig, &mut feeder);
         }
-        assert_eq!(rig.told().fault, Some(Fault::EncoderJumped), "seed {seed}");
+        assert_eq!(rig.told().fault(), Some(Fault::EncoderJumped), "seed {seed}");
         assert!(arm(&mut rig));
         for number in 0..5000 {
             let Tick { telemetry, light, .. } = fed(&mut rig, &mut feeder);
@@ -200,7 +204,7 @@ fn an_arm_that_was_on_its_way_when_a_fault_came_neither_wipes_it_nor_lights() {
         let from_tick = if number % 2 == 0 { 0 } else { 0u32.wrapping_sub(when + 8) };
         for stops in [Stops::Encoder(joint), Stops::Segment] {
             let seen = with_an_arm_on_its_way(&plan, (when, from_tick), stops, None);
-            let seen = seen.iter().position(|told| told.fault.is_some()).unwrap();
+            let seen = seen.iter().position(|told| told.fault().is_some()).unwrap();
             for offset in -5..=5 {
                 let arrives = (seen as i32 + offset) as u32;
                 let told = with_an_arm_on_its_way(&plan, (when, from_tick), stops, Some(arrives));
@@ -223,7 +227,7 @@ fn nothing_is_armed_for_a_host_that_is_not_there() {
         assert!(now.phase == Phase::Dark && now.darkness.contains(Darkness::HostSilent));
     }
     let (mut rig, _) = under_way(&plan, 200, 0, 0);
-    assert!((0..1100).map(|_| rig.step()).last().unwrap().telemetry.fault == Some(Fault::HostLost));
+    assert!((0..1100).map(|_| rig.step()).last().unwrap().telemetry.fault() == Some(Fault::HostLost));
     let number = rig.told().fault_number;
     rig.send(Command::Arm { acknowledges: number }).unwrap();
     assert_eq!(rig.step().telemetry.phase, Phase::Faulted);
@@ -250,7 +254,7 @@ fn a_dot_is_dark_without_a_host_and_ends_with_it() {
         let now = unhomed.step();
         assert!(
             !now.light
-                && now.telemetry.fault.is_none()
+                && now.telemetry.fault().is_none()
                 && now.telemetry.darkness.contains(Darkness::HostSilent)
         );
     }
@@ -310,7 +314,7 @@ fn a_fault_about_the_wrap_of_ticks_is_seen_as_soon_as_any_other() {
         rig.suffer(Trouble::EncoderJump(Joint::Pan, 40));
         let told: Vec<Telemetry> = (0..4).map(|_| fed(&mut rig, &mut feeder).telemetry).collect();
         // what is read at the end of a tick is seen in the next
-        assert_eq!(told[1].fault, Some(Fault::EncoderJumped), "{}", told[1].tick);
+        assert_eq!(told[1].fault(), Some(Fault::EncoderJumped), "{}", told[1].tick);
         assert!(!told[1].actuation.gate);
     }
 }

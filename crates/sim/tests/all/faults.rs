@@ -83,7 +83,7 @@ fn run_with(config: &RigConfig, plan: &Plan, mischief: Mischief, seed: u64) -> V
 
 /// When a run shows its first fault, and which; no light is let out from then on.
 fn fault_of(ticks: &[Tick], what: &str) -> (usize, Fault) {
-    let seen = ticks.iter().enumerate().find_map(|(at, t)| Some((at, t.telemetry.fault?)));
+    let seen = ticks.iter().enumerate().find_map(|(at, t)| Some((at, t.telemetry.fault()?)));
     assert!(seen.is_some(), "{what}: not seen");
     let (at, fault) = seen.unwrap();
     assert!(ticks[at..].iter().all(|t| !t.telemetry.actuation.gate), "{what}: lit after it");
@@ -308,7 +308,7 @@ fn after_a_fault_only_arming_lights_again_and_no_ink_is_missing() {
             ticks.push(rig.step());
         }
         let last = ticks.last().unwrap();
-        assert_eq!((last.telemetry.phase, last.telemetry.fault), (Phase::Done, None), "seed {seed}");
+        assert_eq!((last.telemetry.phase, last.telemetry.fault()), (Phase::Done, None), "seed {seed}");
         let dark = &ticks[when as usize + 50..when as usize + 1200];
         assert!(dark.iter().all(|t| !t.telemetry.actuation.gate), "seed {seed}");
         // the plan's clock passes every lit tick with light, but for what the relay takes at either end of the gap
@@ -364,7 +364,7 @@ fn an_encoder_that_jumps_after_another_fault_still_gets_its_motor_switched_off()
             last = Some(rig.step());
         }
         let seen = last.unwrap().telemetry;
-        assert_eq!(seen.fault, Some(Fault::HostLost), "seed {seed}");
+        assert_eq!(seen.fault(), Some(Fault::HostLost), "seed {seed}");
         assert_eq!(seen.actuation.command_v, PanTilt::default(), "seed {seed}");
     }
 }
@@ -377,9 +377,9 @@ fn arming_does_not_forget_a_fault_that_was_not_told() {
     assert!(arm(&mut rig));
     rig.send(Command::Append(Segment { ticks: 0, ..plan.segments[0] })).unwrap();
     assert!(arm(&mut rig));
-    assert_eq!(rig.step().telemetry.fault, Some(Fault::SetpointInvalid));
+    assert_eq!(rig.step().telemetry.fault(), Some(Fault::SetpointInvalid));
     assert!(arm(&mut rig));
-    assert_eq!(rig.step().telemetry.fault, None);
+    assert_eq!(rig.step().telemetry.fault(), None);
 }
 
 /// Whoever arms and dies is missed as before.
@@ -392,10 +392,10 @@ fn a_host_that_arms_after_a_fault_and_falls_silent_is_missed_again() {
     for &segment in plan.segments.iter().take(40) {
         rig.send(Command::Append(segment)).unwrap();
     }
-    let faults = |rig: &mut SimulatedRig| (0..1100).map(|_| rig.step()).last().unwrap().telemetry.fault;
+    let faults = |rig: &mut SimulatedRig| (0..1100).map(|_| rig.step()).last().unwrap().telemetry.fault();
     assert_eq!(faults(&mut rig), Some(Fault::HostLost));
     assert!(arm(&mut rig));
-    assert_eq!(rig.step().telemetry.fault, None);
+    assert_eq!(rig.step().telemetry.fault(), None);
     assert_eq!(faults(&mut rig), Some(Fault::HostLost));
 }
 
@@ -408,7 +408,7 @@ fn a_head_that_is_armed_where_it_fell_to_comes_back_without_a_jerk() {
     }
     rig.suffer(Trouble::EncoderJump(Joint::Pan, 6));
     let fallen = (0..400).map(|_| alive(&mut rig)).last().unwrap();
-    assert!(fallen.telemetry.fault.is_some() && fallen.angle_rad.tilt > 0.05, "{:?}", fallen.angle_rad);
+    assert!(fallen.telemetry.fault().is_some() && fallen.angle_rad.tilt > 0.05, "{:?}", fallen.angle_rad);
     rig.suffer(Trouble::EncoderJump(Joint::Pan, -6));
     // what the line carries now is read at the end of a tick, and seen in the next
     rig.step();
@@ -416,7 +416,7 @@ fn a_head_that_is_armed_where_it_fell_to_comes_back_without_a_jerk() {
     assert!(arm(&mut rig));
     let back: Vec<Tick> = (0..3000).map(|_| alive(&mut rig)).collect();
     let last = back.last().unwrap();
-    assert_eq!((last.telemetry.phase, last.telemetry.fault), (Phase::Armed, None));
+    assert_eq!((last.telemetry.phase, last.telemetry.fault()), (Phase::Armed, None));
     assert!(last.angle_rad.tilt.abs() < 2.0 * COUNT_RAD, "{:?}", last.angle_rad);
     let beyond = back.iter().map(|t| -t.angle_rad.tilt).fold(0.0, f64::max);
     assert!(beyond < 3.0 * COUNT_RAD, "{beyond} rad past it");

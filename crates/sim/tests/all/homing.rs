@@ -87,7 +87,7 @@ fn a_head_that_was_told_where_it_stands_draws_as_one_that_always_knew() {
         rig.send(Command::Abandon).unwrap();
         let home = *ticks(&mut rig, 3000).last().unwrap();
         assert!(Joint::BOTH.iter().all(|&j| home.angle_rad[j].abs() < 2e-3), "{pose:?} {:?}", home.angle_rad);
-        assert_eq!(home.telemetry.fault, None);
+        assert_eq!(home.telemetry.fault(), None);
         let run = drawn(&mut rig, &plan);
         assert!(run.is_done(), "{pose:?} {:?}", run.fault());
         let lit: Vec<&Tick> = run.ticks.iter().filter(|t| t.light).collect();

@@ -72,12 +72,12 @@ fn an_input_that_opens_darkens_in_the_tick_until_it_is_fine_and_somebody_arms() 
         let open = |t: &Tick| t.telemetry.inputs.state(input) == InputState::Open;
         let seen = ticks.iter().position(open).unwrap();
         assert!(seen <= when + 2, "{what}: seen {} ticks after", seen - when);
-        assert!(ticks[seen - 1].telemetry.fault.is_none() && ticks[when].light, "{what}");
+        assert!(ticks[seen - 1].telemetry.fault().is_none() && ticks[when].light, "{what}");
         // from its tick on until somebody arms after it, over 150 ticks of which it is fine again
         let (during, after) = ticks[seen..].split_at(when + 401 - seen);
         for tick in during {
             let now = &tick.telemetry;
-            assert_eq!((now.phase, now.fault), (Phase::Faulted, Some(input.fault())), "{what}");
+            assert_eq!((now.phase, now.fault()), (Phase::Faulted, Some(input.fault())), "{what}");
             assert!(!now.actuation.gate && !now.actuation.enable, "{what}, tick {}", now.tick);
             let off = input.fault().row().motors == Motors::Off;
             assert_eq!(off, now.actuation.command_v == PanTilt::default(), "{what}, tick {}", now.tick);
@@ -85,7 +85,7 @@ fn an_input_that_opens_darkens_in_the_tick_until_it_is_fine_and_somebody_arms() 
         assert!(during[1..].iter().all(|t| !t.light), "{what}: light after the tick");
         // then the stroke goes on where it stopped
         assert_eq!(
-            after.last().map(|t| (t.telemetry.phase, t.telemetry.fault)),
+            after.last().map(|t| (t.telemetry.phase, t.telemetry.fault())),
             Some((Phase::Done, None)),
             "{what}"
         );
@@ -106,7 +106,7 @@ fn the_names_of_two_inputs_that_open_at_once_do_not_hide_what_the_second_means_f
         }
     });
     let last = ticks.last().unwrap().telemetry;
-    assert_eq!((last.fault, last.actuation.command_v), (Some(Fault::InterlockOpen), PanTilt::default()));
+    assert_eq!((last.fault(), last.actuation.command_v), (Some(Fault::InterlockOpen), PanTilt::default()));
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn a_rig_that_is_powered_up_with_an_open_lid_cannot_be_armed() {
         rig.send(arm_after(&last)).unwrap();
         last = rig.step();
         let now = last.telemetry;
-        assert_eq!((now.phase, now.fault), (Phase::Faulted, Some(Fault::InterlockOpen)));
+        assert_eq!((now.phase, now.fault()), (Phase::Faulted, Some(Fault::InterlockOpen)));
     }
 }
 
@@ -137,14 +137,14 @@ fn a_tick_that_comes_too_late_darkens_in_it_and_a_little_jitter_does_not() {
             })
         };
         let ticks = late_at(when, late);
-        let seen = ticks.iter().position(|t| t.telemetry.fault.is_some()).unwrap();
+        let seen = ticks.iter().position(|t| t.telemetry.fault().is_some()).unwrap();
         // the tick after the moment is held up, the next one sees it
         assert_eq!(seen, when as usize + 2, "seed {seed}");
         let after = &ticks[seen..];
-        assert!(after.iter().all(|t| t.telemetry.fault == Some(Fault::TickLate)), "seed {seed}");
+        assert!(after.iter().all(|t| t.telemetry.fault() == Some(Fault::TickLate)), "seed {seed}");
         assert!(after.iter().all(|t| !t.telemetry.actuation.gate && !t.telemetry.actuation.enable));
         assert!(after.iter().all(|t| t.telemetry.actuation.command_v != PanTilt::default()), "held");
-        assert!(late_at(when, 0.4).iter().all(|t| t.telemetry.fault.is_none()), "seed {seed}: jitter");
+        assert!(late_at(when, 0.4).iter().all(|t| t.telemetry.fault().is_none()), "seed {seed}: jitter");
     }
 }
 
@@ -155,7 +155,7 @@ fn a_laser_whose_relay_is_stuck_goes_dark_by_the_second_switch() {
     let mut longest = 0;
     for seed in 0..MOMENTS {
         let when = moment(&plan, seed);
-        let ticks = run_with(&plan, seed, 20_000, |rig, tick| match tick.telemetry.fault {
+        let ticks = run_with(&plan, seed, 20_000, |rig, tick| match tick.telemetry.fault() {
             None if tick.telemetry.tick == when => rig.suffer(Trouble::LaserStuck),
             // whoever arms again gets no light by it either
             Some(_) => rig.send(arm_after(tick)).unwrap(),
@@ -163,8 +163,8 @@ fn a_laser_whose_relay_is_stuck_goes_dark_by_the_second_switch() {
         });
         let gate = |t: &Tick| t.telemetry.actuation.gate;
         let could = when as usize + ticks[when as usize..].iter().position(|t| !gate(t)).unwrap();
-        let seen = ticks.iter().position(|t| t.telemetry.fault.is_some()).unwrap();
-        assert_eq!(ticks[seen].telemetry.fault, Some(Fault::LaserStuck), "seed {seed}");
+        let seen = ticks.iter().position(|t| t.telemetry.fault().is_some()).unwrap();
+        assert_eq!(ticks[seen].telemetry.fault(), Some(Fault::LaserStuck), "seed {seed}");
         let dark = ticks.iter().rposition(|t| t.light).unwrap();
         assert_eq!(dark, seen, "seed {seed}: it is dark from the next tick on");
         longest = longest.max(dark - could);

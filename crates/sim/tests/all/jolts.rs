@@ -89,7 +89,7 @@ fn what_the_gyroscope_saw_is_told_with_the_fault() {
         ran.ticks.iter().find(|t| t.telemetry.darkness.contains(Darkness::Jolted) && t.telemetry.tick > when);
     let dark = dark.unwrap().telemetry;
     assert!(dark.tick - when <= 5 && !dark.actuation.enable, "{} ms", dark.tick - when);
-    let told = ran.ticks.iter().find(|t| t.telemetry.fault == Some(Fault::Bumped)).unwrap().telemetry;
+    let told = ran.ticks.iter().find(|t| t.telemetry.fault() == Some(Fault::Bumped)).unwrap().telemetry;
     let [_, down, left] = told.foot_turned_rad.unwrap().map(|rad| f64::from(rad).to_degrees());
     assert!((left - 0.8).abs() < 0.02 && (down - 0.6).abs() < 0.02, "{left}° {down}°");
 }

@@ -71,12 +71,12 @@ fn an_abandoned_job_leaves_a_head_at_zero_that_takes_another() {
         let mut rig = stopped(&plan);
         if fault {
             rig.suffer(Trouble::EncoderJump(Joint::Tilt, -7));
-            assert_eq!(ticks(&mut rig, 200).last().unwrap().telemetry.fault, Some(Fault::EncoderJumped));
+            assert_eq!(ticks(&mut rig, 200).last().unwrap().telemetry.fault(), Some(Fault::EncoderJumped));
             assert!(arm(&mut rig));
         }
         rig.send(Command::Abandon).unwrap();
         let way = ticks(&mut rig, 4000);
-        assert!(way.iter().all(|t| !t.light && t.telemetry.fault.is_none()));
+        assert!(way.iter().all(|t| !t.light && t.telemetry.fault().is_none()));
         let home = way.last().unwrap().telemetry.position_rad;
         assert!(home.pan.abs().max(home.tilt.abs()) < 2e-3, "{home:?}");
         assert_eq!(way.last().unwrap().telemetry.homed, !fault);

@@ -36,7 +36,7 @@ fn sent(segment: Segment) -> Vec<Tick> {
 
 fn check_refused(segment: Segment, what: &str) {
     let ticks = sent(segment);
-    assert!(ticks.iter().all(|t| t.telemetry.fault == Some(Fault::SetpointInvalid)), "{what}");
+    assert!(ticks.iter().all(|t| t.telemetry.fault() == Some(Fault::SetpointInvalid)), "{what}");
     assert!(ticks.iter().all(|t| !t.telemetry.actuation.gate && !t.light), "{what}: lit");
     let most_v = ticks.iter().map(|t| t.telemetry.actuation.command_v.pan.abs()).fold(0.0, f32::max);
     assert!(most_v < 1.0, "{what}: {most_v} V");
@@ -50,7 +50,7 @@ fn what_is_wild_between_its_ends_is_refused() {
     // slow, and out of its range halfway
     let (_, upper) = RigConfig::report().model.geometry.range_rad.pan;
     check_refused(there_and_back(upper as f32 + 0.05, 8000), "out of its range");
-    assert_eq!(sent(there_and_back(0.01, 400))[0].telemetry.fault, None);
+    assert_eq!(sent(there_and_back(0.01, 400))[0].telemetry.fault(), None);
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn what_may_stray_as_it_likes_is_refused() {
     assert!(arm(&mut rig));
     rig.send(Command::Append(Segment { tolerance_rad: PanTilt::new(1e30, 1e30), ..plan.segments[0] }))
         .unwrap();
-    assert_eq!(rig.step().telemetry.fault, Some(Fault::SetpointInvalid));
+    assert_eq!(rig.step().telemetry.fault(), Some(Fault::SetpointInvalid));
 }
 
 fn planned(config: &RigConfig, path: Path, speed_m_s: f64, lit_speed: LitSpeed, travel: DarkMove) -> Plan {

@@ -302,7 +302,7 @@ fn after_a_fault_it_goes_on_only_when_that_was_cleared_and_somebody_armed() {
     until(&mut wall, State::Fault, 5000);
     assert!(
         std::iter::from_fn(|| wall.event())
-            .any(|e| matches!(e, Event::Fault { fault: Fault::LaserStuck, .. }))
+            .any(|e| matches!(e, Event::Fault(record) if record.fault == Fault::LaserStuck))
     );
     wall.rig_mut().suffer(Trouble::LaserMended);
     assert!(steps(&mut wall, 500).iter().skip(100).all(|t| !t.light));

@@ -49,7 +49,7 @@ fn a_host_that_falls_silent_is_waited_for_in_the_dark_after_50_ms_and_lost_after
             assert!(!told.actuation.gate, "seed {seed}: lit {at} ticks after that");
             assert!(told.darkness.contains(Darkness::HostSilent), "seed {seed}: {at}");
             let lost = at >= lost - silent;
-            assert_eq!(told.fault, lost.then_some(Fault::HostLost), "seed {seed}: {at}");
+            assert_eq!(told.fault(), lost.then_some(Fault::HostLost), "seed {seed}: {at}");
             assert_eq!(told.actuation.enable, !lost, "seed {seed}: {at}");
             let phases: &[Phase] = if lost { &[Phase::Faulted] } else { &[Phase::Holding, Phase::Testing] };
             assert!(phases.contains(&told.phase), "seed {seed}: {:?} at {at}", told.phase);
@@ -107,6 +107,6 @@ fn who_waits_for_its_host_is_not_late() {
             feeder.feed(&mut rig);
         }
         let told = rig.step().telemetry;
-        assert_eq!(told.fault, None, "{tick}");
+        assert_eq!(told.fault(), None, "{tick}");
     }
 }

@@ -51,7 +51,7 @@ fn told(ticks: &[Tick], gate: bool, enable: bool) -> usize {
 }
 
 fn first_fault(ticks: &[Tick]) -> Option<(usize, Fault)> {
-    ticks.iter().enumerate().find_map(|(at, t)| Some((at, t.telemetry.fault?)))
+    ticks.iter().enumerate().find_map(|(at, t)| Some((at, t.telemetry.fault()?)))
 }
 
 /// Before a plan's first light each switch was closed by itself for as long as it takes, and no light was seen; the plan's clock did not wait.
@@ -187,7 +187,7 @@ fn drawn(watched: Watched, stuck: Stuck) -> (Vec<Fault>, usize, bool) {
         let before = &ticks[..ticks.iter().position(is_wanted).unwrap_or(ticks.len())];
         stray = before.split(|(_, light)| !light).map(<[_]>::len).fold(stray, usize::max);
         wanted |= before.len() < ticks.len();
-        faults.extend(ticks.iter().find_map(|(t, _)| t.fault));
+        faults.extend(ticks.iter().find_map(|(t, _)| t.fault()));
     }
     assert!(faults.is_empty() || faults.len() == 10, "{watched:?}, {stuck:?}: in some only");
     faults.dedup();
@@ -377,7 +377,7 @@ fn what_was_stuck_is_tried_again_before_the_job_goes_on() {
         let tick = alive(&mut rig);
         ticks.push(tick);
         let (now, at) = (tick.telemetry, ticks.len());
-        dark = dark.or(now.fault.map(|_| at));
+        dark = dark.or(now.fault().map(|_| at));
         if dark.is_some_and(|dark| at == dark + 800) {
             rig.suffer(Trouble::LaserMended);
         }
@@ -390,5 +390,5 @@ fn what_was_stuck_is_tried_again_before_the_job_goes_on() {
     let again = armed + ticks[armed..].iter().position(|t| t.telemetry.actuation.lights()).unwrap();
     assert_eq!(told(&ticks[again..], true, false), 0);
     assert!(ticks[armed..again].iter().all(|t| !t.light));
-    assert_eq!(ticks.last().map(|t| (t.telemetry.phase, t.telemetry.fault)), Some((Phase::Done, None)));
+    assert_eq!(ticks.last().map(|t| (t.telemetry.phase, t.telemetry.fault())), Some((Phase::Done, None)));
 }

@@ -1,6 +1,6 @@
 //! `docs/faults.md`: its two tables are printed from `rig`'s, and what it compares us with names only codes that exist.
 
-use tracelight_rig::{Darkness, Fault};
+use tracelight_rig::{Darkness, Fault, Measure};
 
 use crate::support;
 
@@ -14,7 +14,15 @@ fn table(head: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
 }
 
 fn faults() -> String {
-    let head = ["fault", "number", "when it is seen", "how soon", "what is done", "how it clears"];
+    let head = [
+        "fault",
+        "number",
+        "when it is seen",
+        "how soon",
+        "what is measured",
+        "what is done",
+        "how it clears",
+    ];
     let rows = Fault::TABLE.iter().map(|row| {
         let lost = if row.loses_counts { ", and counts may be lost" } else { "" };
         vec![
@@ -22,6 +30,10 @@ fn faults() -> String {
             row.number.to_string(),
             row.seen.to_owned(),
             row.soon.to_string(),
+            match row.measure {
+                Measure::NONE => "–".to_owned(),
+                Measure { unit, what, .. } => format!("{unit} {what}"),
+            },
             format!("dark; {}{lost}", row.motors.words()),
             row.clears.words().to_owned(),
         ]

@@ -64,9 +64,9 @@ fn a_lit_segment_that_rests_is_dark_in_time_and_a_fault() {
     assert!((BUDGET - 20..=BUDGET).contains(&longest) && all == longest, "{all} {longest} ms");
     let stands = |t: &Tick| t.telemetry.darkness.contains(Darkness::Standing);
     let (dark, fault) =
-        (ticks.iter().position(stands), ticks.iter().position(|t| t.telemetry.fault.is_some()));
+        (ticks.iter().position(stands), ticks.iter().position(|t| t.telemetry.fault().is_some()));
     assert_eq!(fault.unwrap() - dark.unwrap(), 100);
-    assert_eq!(ticks[fault.unwrap()].telemetry.fault, Some(Fault::LightStood));
+    assert_eq!(ticks[fault.unwrap()].telemetry.fault(), Some(Fault::LightStood));
 }
 
 #[test]
