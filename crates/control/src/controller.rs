@@ -8,7 +8,7 @@ use crate::creep::Pace;
 use crate::estimate::Estimate;
 use crate::finding::Finding;
 use crate::light_budget::{LightBudget, longest_dot_ticks};
-use crate::player::{Played, Player};
+use crate::player::{Played, Player, QUEUE_LENGTH};
 use crate::return_path::ReturnPath;
 use crate::servo::{Reference, Servo};
 use crate::supervisor::{Clock, Situation, Supervisor, rests};
@@ -21,16 +21,17 @@ pub struct Controller {
     config: Config,
 }
 
-/// What the controller remembers from tick to tick.
+/// What the controller remembers from tick to tick. It holds this many segments ahead of time: a board that a wire feeds holds more than one that
+/// is fed in its own memory.
 #[derive(Clone, Copy, Debug)]
-pub struct State {
+pub struct State<const SEGMENTS: usize = QUEUE_LENGTH> {
     tick: u32,
     /// No tick has passed yet: what is sensed in the first is what it started with.
     fresh: bool,
     sensed: Sensed,
     servo: Servo,
     watch: Watch,
-    player: Player,
+    player: Player<SEGMENTS>,
     supervisor: Supervisor,
     budget: LightBudget,
     way_back: Option<ReturnPath>,
@@ -40,7 +41,7 @@ pub struct State {
     home: PanTilt<i32>,
 }
 
-impl State {
+impl<const SEGMENTS: usize> State<SEGMENTS> {
     /// Starts the tick count at another number than 0, as after a long uptime.
     #[must_use]
     pub const fn counting_from(self, tick: u32) -> Self {
@@ -58,6 +59,11 @@ impl State {
         self.servo.told()
     }
 
+    /// Segments that there is room for.
+    pub const fn room(&self) -> usize {
+        self.player.room()
+    }
+
     /// What is added to the counts that are read, since the head was homed.
     pub const fn home(&self) -> &PanTilt<i32> {
         &self.home
@@ -71,14 +77,14 @@ impl Controller {
     }
 
     /// State of a head at rest whose encoders are known to count from zero: homed, dark, disarmed, held where it is.
-    pub fn start_homed(&self, sensed: &Sensed) -> State {
-        let mut state = self.start(sensed);
+    pub fn start_homed<const SEGMENTS: usize>(&self, sensed: &Sensed) -> State<SEGMENTS> {
+        let mut state: State<SEGMENTS> = self.start(sensed);
         state.supervisor.home();
         state
     }
 
     /// State of a head at rest that was just powered up and reports `sensed`: unhomed, dark, disarmed, held where it is.
-    pub fn start(&self, sensed: &Sensed) -> State {
+    pub fn start<const SEGMENTS: usize>(&self, sensed: &Sensed) -> State<SEGMENTS> {
         let servo = Servo::at_rest(&self.config, &sensed.encoders);
         State {
             tick: 0,
@@ -99,7 +105,11 @@ impl Controller {
     /// Takes a command, or gives it back when the queue is full, or when a head is to be homed that is armed, moves, or can
     /// not be there. A segment that does not join the last one, or leaves its bounds anywhere, is taken
     /// and latches a fault. Arming that acknowledges other faults than there were, and arming and a dot without a host that is there, are taken and change nothing.
-    pub fn accept(&self, state: &mut State, command: Command) -> Result<(), Command> {
+    pub fn accept<const SEGMENTS: usize>(
+        &self,
+        state: &mut State<SEGMENTS>,
+        command: Command,
+    ) -> Result<(), Command> {
         match command {
             Command::Arm { acknowledges } => self.arm(state, acknowledges),
             Command::Disarm => self.disarm(state),
@@ -132,7 +142,7 @@ impl Controller {
         Ok(())
     }
 
-    fn arm(&self, state: &mut State, acknowledges: u32) {
+    fn arm<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, acknowledges: u32) {
         let read = acknowledges == state.supervisor.fault_number;
         if !read || !state.watch.hears_host(&self.config) || state.sensed.inputs.any_open() {
             return;
@@ -156,7 +166,7 @@ impl Controller {
     }
 
     /// Forbids light, and stops the plan's clock once what is still on its way out has fallen on its stroke.
-    fn disarm(&self, state: &mut State) {
+    fn disarm<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>) {
         let is_on_stroke = state.supervisor.phase == Phase::Tracing && state.watch.laser.lights();
         state.supervisor.disarm();
         if !state.player.runs_on() {
@@ -167,14 +177,14 @@ impl Controller {
     }
 
     /// Stops the plan's clock in the same way until the host is heard again. The gate alone opens: whoever is heard soon goes on soon.
-    fn wait_for_host(&self, state: &mut State) {
+    fn wait_for_host<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>) {
         let lit = state.watch.laser.lights();
         state.supervisor.begin_hold();
         state.player.stop_in(if lit { self.config.laser_off_ticks } else { 0 });
     }
 
     /// A dot; of a head that is not homed, one that there is room for, or none.
-    fn point(&self, state: &mut State, ticks: u32) {
+    fn point<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, ticks: u32) {
         if state.supervisor.homed {
             return state.supervisor.point(ticks);
         }
@@ -185,7 +195,7 @@ impl Controller {
     }
 
     /// Whether the joints rest, unarmed, and may be at these counts.
-    fn may_home(&self, state: &State, counts: PanTilt<i32>) -> bool {
+    fn may_home<const SEGMENTS: usize>(&self, state: &State<SEGMENTS>, counts: PanTilt<i32>) -> bool {
         /// Who tells where a head stands may be so far off, rad.
         const MARGIN_RAD: f32 = 0.2;
         let is_possible = |j: Joint| {
@@ -198,7 +208,7 @@ impl Controller {
     }
 
     /// Reads encoders from these counts from now on; what was believed before is of other angles.
-    fn home(&self, state: &mut State, counts: PanTilt<i32>) {
+    fn home<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, counts: PanTilt<i32>) {
         for j in Joint::BOTH {
             let measured = &mut state.sensed.encoders[j];
             state.home[j] = state.home[j].wrapping_add(counts[j].wrapping_sub(measured.count));
@@ -216,7 +226,7 @@ impl Controller {
 
     /// One tick. `sensed` is what the head reports at its start; the returned telemetry carries what to do until its
     /// end. The first tick after [`start`](Self::start) takes the same.
-    pub fn tick(&self, state: &mut State, sensed: &Sensed) -> Telemetry {
+    pub fn tick<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, sensed: &Sensed) -> Telemetry {
         let sensed = &from_home(sensed, &state.home);
         self.observe(state, sensed);
         if state.supervisor.phase == Phase::Tracing {
@@ -259,7 +269,12 @@ impl Controller {
     }
 
     /// Volts, and what the laser's switches are told; `lit` is whether nothing speaks against light.
-    fn actuation(&self, state: &mut State, command_v: PanTilt<f32>, lit: bool) -> Actuation {
+    fn actuation<const SEGMENTS: usize>(
+        &self,
+        state: &mut State<SEGMENTS>,
+        command_v: PanTilt<f32>,
+        lit: bool,
+    ) -> Actuation {
         let State { supervisor, watch, sensed, player, .. } = state;
         let at = (&*sensed, player.has_light());
         let (gate, enable) =
@@ -269,7 +284,7 @@ impl Controller {
         actuation
     }
 
-    fn observe(&self, state: &mut State, sensed: &Sensed) {
+    fn observe<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, sensed: &Sensed) {
         state.sensed = *sensed;
         // before all that may come of them: a motor without a supply looks like a dead encoder
         for input in sensed.inputs.opened() {
@@ -301,7 +316,12 @@ impl Controller {
     }
 
     /// Makes it dark where light would stand, if it were not dark anyway.
-    fn keep_budget(&self, state: &mut State, estimates: &PanTilt<Estimate>, darkness: &mut DarknessSet) {
+    fn keep_budget<const SEGMENTS: usize>(
+        &self,
+        state: &mut State<SEGMENTS>,
+        estimates: &PanTilt<Estimate>,
+        darkness: &mut DarknessSet,
+    ) {
         let place = state.supervisor.homed.then(|| {
             (
                 estimates.map(|estimate| estimate.position_rad),
@@ -313,7 +333,11 @@ impl Controller {
         state.budget.ask(stands && state.supervisor.phase == Phase::Tracing);
     }
 
-    fn situation<'a>(&self, state: &State, played: &'a Played) -> Situation<'a> {
+    fn situation<'a, const SEGMENTS: usize>(
+        &self,
+        state: &State<SEGMENTS>,
+        played: &'a Played,
+    ) -> Situation<'a> {
         let position_rad = state.servo.position_rad();
         Situation {
             tick: state.tick,
@@ -337,7 +361,7 @@ impl Controller {
     }
 
     /// Volts for this tick; none when there is nothing to control by.
-    fn drive(&self, state: &mut State, played: &Played) -> PanTilt<f32> {
+    fn drive<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, played: &Played) -> PanTilt<f32> {
         let reference = self.reference(state, played);
         if state.supervisor.blind {
             let none = state.servo.coast();
@@ -357,7 +381,7 @@ impl Controller {
 
     /// Where the loop is to go now and half a tick later: along the plan, or, when its clock stands, gently back to
     /// where it stands; with a laser that does not go dark, to where it is to be parked.
-    fn reference(&self, state: &mut State, played: &Played) -> Reference {
+    fn reference<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, played: &Played) -> Reference {
         let stands = match state.supervisor.phase {
             Phase::Holding => !state.player.runs_on(),
             Phase::Testing | Phase::Faulted => true,
@@ -389,7 +413,7 @@ impl Controller {
     }
 
     /// A little way to and fro from where the plan's clock stands, by which encoders show whether they follow their motors.
-    fn test(&self, state: &mut State, played: &Played) -> Option<Reference> {
+    fn test<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, played: &Played) -> Option<Reference> {
         if state.supervisor.phase != Phase::Testing {
             state.test_move = None;
             return None;
@@ -411,7 +435,7 @@ impl Controller {
     }
 
     /// Along the plan, from rest to rest where that is slower than friction lets go.
-    fn along(&self, state: &mut State, played: &Played) -> Reference {
+    fn along<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, played: &Played) -> Reference {
         let mut reference = Reference { now: played.setpoint, ahead: played.ahead };
         for j in Joint::BOTH {
             if let Some(creep) = &self.config.axes[j].creep {
@@ -433,7 +457,7 @@ fn from_home(sensed: &Sensed, home: &PanTilt<i32>) -> Sensed {
     Sensed { encoders, ..*sensed }
 }
 
-fn run_clock(player: &mut Player, clock: Clock) {
+fn run_clock<const SEGMENTS: usize>(player: &mut Player<SEGMENTS>, clock: Clock) {
     match clock {
         Clock::Run => player.advance(),
         Clock::Stop => player.hold(),

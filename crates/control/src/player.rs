@@ -3,7 +3,7 @@ use tracelight_rig::{PanTilt, SPEED_RANGE, Segment, Setpoint, TICK_S, ease_withi
 use crate::elementary::root;
 use crate::limit::within;
 
-/// Segments the controller can hold ahead of time.
+/// Segments that a controller holds ahead of time unless it is told otherwise.
 pub const QUEUE_LENGTH: usize = 64;
 
 /// Largest step between the end of one segment and the start of the next that still counts as joined, rad.
@@ -11,8 +11,8 @@ const JOIN_RAD: f32 = 2e-4;
 
 /// The plan's clock and the segments it runs through.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Player {
-    queue: [Option<Segment>; QUEUE_LENGTH],
+pub(crate) struct Player<const SEGMENTS: usize> {
+    queue: [Option<Segment>; SEGMENTS],
     head: usize,
     length: usize,
     /// How many of them want light.
@@ -51,10 +51,10 @@ pub(crate) struct Played {
     pub(crate) segment: Option<Segment>,
 }
 
-impl Player {
+impl<const SEGMENTS: usize> Player<SEGMENTS> {
     pub(crate) fn resting_at(position_rad: PanTilt<f32>) -> Self {
         Self {
-            queue: [None; QUEUE_LENGTH],
+            queue: [None; SEGMENTS],
             head: 0,
             length: 0,
             lit: 0,
@@ -78,9 +78,14 @@ impl Player {
         Self { asked_rate: self.asked_rate, ..Self::resting_at(position_rad) }
     }
 
+    /// Segments that there is room for.
+    pub(crate) const fn room(&self) -> usize {
+        SEGMENTS - self.length
+    }
+
     /// Whether another segment fits.
     pub(crate) const fn has_room(&self) -> bool {
-        self.length < QUEUE_LENGTH
+        self.length < SEGMENTS
     }
 
     /// Appends a segment; false when it does not join the one before it in time and place, comes after the last, or ends
@@ -95,7 +100,7 @@ impl Player {
         if !joins || !segment.fits() || segment.ticks == 0 || self.finished || !self.has_room() {
             return false;
         }
-        self.queue[(self.head + self.length) % QUEUE_LENGTH] = Some(segment);
+        self.queue[(self.head + self.length) % SEGMENTS] = Some(segment);
         self.length += 1;
         self.lit += usize::from(segment.gate);
         self.watch_gate();
@@ -169,7 +174,7 @@ impl Player {
 
     /// Whether the plan's gate changes within so many ticks of its clock.
     fn changes_within(&self, ticks: f32) -> bool {
-        let queued = (0..self.length).filter_map(|i| self.queue[(self.head + i) % QUEUE_LENGTH]);
+        let queued = (0..self.length).filter_map(|i| self.queue[(self.head + i) % SEGMENTS]);
         let mut soon = queued.take_while(|segment| -self.since(segment.start_tick) <= ticks);
         soon.next().is_some_and(|now| soon.any(|next| next.gate != now.gate))
     }
@@ -310,8 +315,8 @@ impl Player {
                 return;
             }
             self.rest = segment.sample(f32::from(segment.ticks)).map(|s| Setpoint::at_rest(s.position_rad));
-            self.queue[self.head % QUEUE_LENGTH] = None;
-            self.head = (self.head + 1) % QUEUE_LENGTH;
+            self.queue[self.head % SEGMENTS] = None;
+            self.head = (self.head + 1) % SEGMENTS;
             self.length -= 1;
             self.lit -= usize::from(segment.gate);
         }
@@ -336,7 +341,7 @@ impl Player {
     }
 
     fn current(&self) -> Option<Segment> {
-        self.queue[self.head % QUEUE_LENGTH]
+        self.queue[self.head % SEGMENTS]
     }
 }
 
@@ -355,7 +360,8 @@ mod tests {
             gate: false,
             rate_limit: tracelight_rig::RateLimit::PLANNED,
         };
-        let near_the_end = Player { tick: u32::MAX - 8, ..Player::resting_at(PanTilt::default()) };
+        let near_the_end =
+            Player::<QUEUE_LENGTH> { tick: u32::MAX - 8, ..Player::resting_at(PanTilt::default()) };
         for (ticks, fits) in [(8, true), (9, false), (u16::MAX, false)] {
             let mut player = near_the_end;
             assert_eq!(player.append(still(u32::MAX - 8, ticks)), fits, "{ticks}");

@@ -13,6 +13,7 @@
 
 #![no_std]
 
+mod capabilities;
 mod darkness;
 mod exchange;
 mod fault;
@@ -23,7 +24,9 @@ mod pace;
 mod segment;
 mod setpoint;
 mod telemetry;
+pub mod wire;
 
+pub use capabilities::Capabilities;
 pub use darkness::{Darkness, DarknessRow, DarknessSet};
 pub use exchange::{Actuation, Measurement, Sensed};
 pub use fault::{Clears, Evidence, Exceeded, Fault, FaultRecord, FaultRow, Measure, Motors, Soon, Told};

@@ -7,7 +7,7 @@ use std::hint::black_box;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use tracelight_aim::HeadPose;
-use tracelight_control::Controller;
+use tracelight_control::{Controller, State};
 use tracelight_plant::JointState;
 use tracelight_rig::{Command, PanTilt, Rig, Sensed};
 use tracelight_sim::{RigConfig, Simulated, SimulatedRig, arm};
@@ -70,7 +70,7 @@ fn control_tick(bencher: Bencher<'_, '_>) {
         })
         .collect();
     bencher.counter(ItemsCount::new(sensed.len())).bench(|| {
-        let mut state = controller.start_homed(&sensed[0]);
+        let mut state: State = controller.start_homed(&sensed[0]);
         controller.accept(&mut state, Command::KeepAlive).ok();
         controller.accept(&mut state, Command::Arm { acknowledges: 0 }).ok();
         for &segment in plan.segments.iter().take(60) {
