@@ -30,6 +30,7 @@ pub fn report() -> Config {
         enable_off_ticks: 0,
         host_silence_ticks: 50,
         host_lost_ticks: 1000,
+        lead_ticks: 0,
         standing_ticks: 1000,
         standing_radius_rad: 0.0014771085,
         tolerance_limit_rad: 0.1,

@@ -55,6 +55,8 @@ pub struct Config {
     pub host_silence_ticks: u32,
     /// Ticks it may be silent before that is a fault.
     pub host_lost_ticks: u32,
+    /// So much of a plan must be there before it begins, ticks, unless that is all of it: what comes by a wire is held up now and then.
+    pub lead_ticks: u32,
     /// How long light may stand in one place, ticks.
     pub standing_ticks: u32,
     /// Radius of a place as the head sees it, rad.

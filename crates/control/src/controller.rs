@@ -64,6 +64,20 @@ impl<const SEGMENTS: usize> State<SEGMENTS> {
         self.player.room()
     }
 
+    /// Counts at which the head stands when its encoders read this, if it is homed and nothing moves it: where it can be told that it is.
+    pub fn homed_at(&self, sensed: &Sensed) -> Option<PanTilt<i32>> {
+        let is_off = matches!(self.supervisor.phase, Phase::Dark | Phase::Done | Phase::Faulted);
+        let rates = self.servo.estimates().map(|estimate| estimate.velocity_rad_s);
+        let is_still = self.supervisor.homed && is_off && rests(rates);
+        let counts = |j: Joint| sensed.encoders[j].count.wrapping_add(self.home[j]);
+        is_still.then(|| PanTilt::from_fn(counts))
+    }
+
+    /// Whether it is known where the joints are.
+    pub const fn is_homed(&self) -> bool {
+        self.supervisor.homed
+    }
+
     /// What is added to the counts that are read, since the head was homed.
     pub const fn home(&self) -> &PanTilt<i32> {
         &self.home
@@ -71,6 +85,11 @@ impl<const SEGMENTS: usize> State<SEGMENTS> {
 }
 
 impl Controller {
+    /// What it is told.
+    pub const fn config(&self) -> &Config {
+        &self.config
+    }
+
     /// Makes a controller from a configuration that the caller has checked.
     pub const fn new(config: Config) -> Self {
         Self { config }
@@ -355,6 +374,7 @@ impl Controller {
             planned: state.player.wants_light(self.config.laser_on_ticks, self.config.laser_off_ticks),
             light_due: state.player.light_is_due(self.config.laser_on_ticks),
             begun: state.player.has_begun(),
+            may_begin: state.player.has_ahead(self.config.lead_ticks),
             starved: state.player.is_empty() && !state.player.is_done(),
             done: state.player.is_done(),
         }

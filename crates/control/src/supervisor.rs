@@ -75,6 +75,8 @@ pub(crate) struct Situation<'a> {
     pub(crate) light_due: bool,
     /// The plan's clock has left its start.
     pub(crate) begun: bool,
+    /// So much of the plan is there that it may begin.
+    pub(crate) may_begin: bool,
     /// Segments ran out and more were promised.
     pub(crate) starved: bool,
     /// Segments ran out as announced.
@@ -163,7 +165,7 @@ impl Supervisor {
         match self.phase {
             // a job that was disarmed on its way goes on only from where it stopped, a new one from where it begins
             Phase::Armed if at.segment.is_some() && (at.begun || strayed(at)) => self.begin_hold(),
-            Phase::Armed if at.segment.is_some() => self.phase = Phase::Tracing,
+            Phase::Armed if at.segment.is_some() && at.may_begin => self.phase = Phase::Tracing,
             Phase::Tracing if at.done => self.phase = Phase::Done,
             Phase::Tracing if at.starved => self.trip(at.tick, Finding::of(Fault::SetpointsStale)),
             Phase::Tracing if must_hold(at) => self.begin_hold(),
@@ -289,7 +291,7 @@ impl Supervisor {
     }
 }
 
-/// That a joint is believed outside its range.
+/// The fault of a joint that is believed outside its range.
 #[cold]
 fn beyond_range(config: &Config, at: &Situation<'_>, homed: bool) -> Finding {
     let found = |j: Joint| {

@@ -11,7 +11,7 @@ pub struct Capabilities {
     pub light_watched: bool,
     /// A gyroscope is fixed to its foot: [`Sensed::foot_rad_s`](crate::Sensed::foot_rad_s).
     pub gyroscope: bool,
-    /// It measures how long its ticks take: [`Sensed::lasted_ticks`](crate::Sensed::lasted_ticks).
+    /// The length of its ticks is measured: [`Sensed::lasted_ticks`](crate::Sensed::lasted_ticks).
     pub times_ticks: bool,
     /// Its encoders know their angle from power-up on: it needs no homing.
     pub absolute: bool,
@@ -60,7 +60,7 @@ mod tests {
             let is_known = bit < FLAGS || (16..16 + Input::ALL.len() as u32).contains(&bit);
             assert_eq!(read.map(|read| read.bits()), is_known.then_some(1 << bit), "{bit}");
         }
-        let all = (1 << FLAGS) - 1 | 0x7F << 16;
+        let all = ((1 << FLAGS) - 1) | (0x7F << 16);
         assert_eq!(Capabilities::from_bits(all).map(|read| read.bits()), Some(all));
         assert_eq!(Capabilities::from_bits(0), Some(Capabilities::default()));
     }

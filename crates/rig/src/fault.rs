@@ -1,10 +1,10 @@
 //! Faults, and the table that lists them all.
 
-mod record;
-mod row;
+pub(crate) mod row;
+#[cfg(test)]
+mod tests;
 
-pub use record::{Evidence, Exceeded, FaultRecord, Measure, Told};
-pub use row::{Clears, Motors, Soon};
+pub use row::{Clears, Measure, Motors, Soon};
 
 /// One row of [`Fault::TABLE`]: all that is known of a fault but how it is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -347,6 +347,39 @@ faults! {
         clears: Clears::Armed,
         words: "No light came where it was wanted, or the gate's switch did not close: see whether the laser has its supply and the relay's coil is driven, and whether the photodiode that watches the light is covered or broken: nobody would see light that stays on.",
     }
+    BoardReset = 26 {
+        what: "The board that drives the head was reset.",
+        code: "board-reset",
+        seen: "a board greets unasked, or knows nothing of its configuration any more",
+        soon: Soon::Words("dark at once, a fault when it greets"),
+        measure: Measure::NONE,
+        motors: Motors::Off,
+        loses_counts: true,
+        clears: Clears::FoundAndArmed,
+        words: "The board that drives the head was reset, by its button, its supply or its watchdog, and does not know where the head stands: look at its supply, and home the head before it is armed again.",
+    }
+    TwinDiverged = 27 {
+        what: "The host's own controller, given what the board sensed, does not do what the board did.",
+        code: "twin-diverged",
+        seen: "volts, switches or state of a tick differ in any bit",
+        soon: Soon::Words("when the row of the tick comes"),
+        measure: Measure::NONE,
+        motors: Motors::Held,
+        loses_counts: true,
+        clears: Clears::FoundAndArmed,
+        words: "The host's own controller, given what the board sensed, does not do what the board did: one of both has a memory fault, or is another program. Load the board's program of this version; if it comes again, the board is broken.",
+    }
+    LinkLost = 28 {
+        what: "The connection to the board is gone, or rows of it are lost for good.",
+        code: "link-lost",
+        seen: "the board does not answer for three seconds, or can not tell again what was lost",
+        soon: Soon::Words("dark after control.host_silence, a fault after 3 s"),
+        measure: Measure::NONE,
+        motors: Motors::Held,
+        loses_counts: true,
+        clears: Clears::FoundAndArmed,
+        words: "The connection to the board was gone for so long that nobody knows what it did meanwhile: look at the cable, and home the head before it is armed again.",
+    }
 }
 
 /// Of which faults something is true, a bit each by number: a board asks without keeping the words of the table.
@@ -401,66 +434,5 @@ impl Fault {
     /// Whether counts may have been lost or invented, so that the head's position is unknown.
     pub const fn loses_counts(self) -> bool {
         LOSES_COUNTS & (1 << self.number()) != 0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// What wires and scripts know. A row may be added at the end; none may change, and who takes a fault out leaves its number here, alone.
-    const GOLDEN: &[(u8, &str)] = &[
-        (1, "encoder-jumped"),
-        (2, "encoder-dead"),
-        (3, "encoder-noisy"),
-        (4, "encoder-slipping"),
-        (5, "setpoints-stale"),
-        (6, "setpoint-invalid"),
-        (7, "limit-reached"),
-        (8, "hold-timed-out"),
-        (9, "amplifier-saturated"),
-        (10, "motor-hot"),
-        (11, "laser-stuck"),
-        (12, "host-lost"),
-        (13, "estimate-diverged"),
-        (14, "not-a-number"),
-        (15, "emergency-stop"),
-        (16, "interlock-open"),
-        (17, "key-off"),
-        (18, "amplifier-fault"),
-        (19, "supply-low"),
-        (20, "too-hot"),
-        (21, "tick-late"),
-        (22, "light-stood"),
-        (23, "encoder-scale"),
-        (24, "bumped"),
-        (25, "laser-dark"),
-    ];
-
-    #[test]
-    fn numbers_and_codes_are_those_that_wires_and_scripts_know() {
-        let now = Fault::TABLE.map(|row| (row.number, row.code));
-        assert_eq!(now, GOLDEN);
-    }
-
-    #[test]
-    fn every_fault_has_one_row_with_a_number_and_a_code_of_its_own() {
-        for fault in Fault::ALL {
-            assert_eq!(Fault::TABLE.iter().filter(|row| row.fault == fault).count(), 1, "{fault:?}");
-            assert_eq!((fault.row().fault, fault.row().number), (fault, fault.number()));
-            assert_eq!(Fault::from_number(fault.number()), Some(fault));
-            assert_eq!(Fault::from_code(fault.code()), Some(fault));
-            assert_eq!(fault.leaves_motors_blind(), fault.row().motors == Motors::Off, "{fault:?}");
-            assert_eq!(fault.loses_counts(), fault.row().loses_counts, "{fault:?}");
-        }
-        assert_eq!((Fault::from_number(0), Fault::from_code("")), (None, None));
-    }
-
-    #[test]
-    fn what_loses_counts_is_not_armed_before_the_head_is_found() {
-        for row in Fault::TABLE {
-            assert_eq!(row.loses_counts, row.clears == Clears::FoundAndArmed, "{}", row.code);
-            assert!(!row.loses_counts || row.motors == Motors::Off, "{}", row.code);
-        }
     }
 }

@@ -72,7 +72,7 @@ impl Dice {
         Ask::Command(command)
     }
 
-    fn to_board(&mut self) -> ToBoard<'static> {
+    fn hosts(&mut self) -> ToBoard<'static> {
         match self.below(8) {
             0 => ToBoard::Hello {
                 version: (self.u32() as u8, 3),
@@ -143,7 +143,7 @@ impl Dice {
         }
     }
 
-    fn from_board(&mut self) -> FromBoard<'static> {
+    fn boards(&mut self) -> FromBoard<'static> {
         match self.below(5) {
             0 => FromBoard::Hello(Greeting {
                 version: (self.u32() as u8, self.u32() as u8),
@@ -190,7 +190,7 @@ impl Dice {
 fn whatever_a_host_says_a_board_reads() {
     let mut dice = Dice(1);
     for _ in 0..50_000 {
-        let said = dice.to_board();
+        let said = dice.hosts();
         let body = said.body();
         assert!(!body.bytes().is_empty(), "{said:?} does not fit");
         assert_eq!(ToBoard::read(body.bytes()), Some(said));
@@ -202,7 +202,7 @@ fn whatever_a_host_says_a_board_reads() {
 fn whatever_a_board_says_a_host_reads() {
     let mut dice = Dice(2);
     for _ in 0..50_000 {
-        let said = dice.from_board();
+        let said = dice.boards();
         let body = said.body();
         assert_eq!(FromBoard::read(body.bytes()), Some(said));
         assert_eq!(ToBoard::read(body.bytes()), None, "{said:?} is no host's");
@@ -246,19 +246,19 @@ fn what_is_sensed_is_told_within_a_step_and_stays_what_it_is() {
             assert_eq!(before.count, after.count);
             assert_eq!(before.edge_age_ticks.is_some(), after.edge_age_ticks.is_some());
             let off = before.edge_age_ticks.unwrap_or(0.0) - after.edge_age_ticks.unwrap_or(0.0);
-            assert!((0.0..=2.0 / 65536.0).contains(&off), "{off}");
+            assert!((0.0..=3.0 / 65536.0).contains(&off), "{off}");
         }
         let off = sensed.lasted_ticks.unwrap_or(0.0).min(255.0 / 128.0) - told.lasted_ticks.unwrap_or(0.0);
         assert!((-1.0 / 128.0..1.0 / 128.0).contains(&off), "{off}");
     }
-    // a stamp that is none is no stamp, and a length that is none is late
+    // a stamp that cannot be is no number, and a length that is none is late
     let wild = |age: f32| {
         let measured = Measurement { count: 0, edge_age_ticks: Some(age) };
         let encoders = PanTilt::new(measured, measured);
         as_told(&Sensed { encoders, lasted_ticks: Some(f32::NAN), ..Sensed::default() })
     };
     for age in [-0.1, 1.0, f32::NAN, f32::INFINITY] {
-        assert_eq!(wild(age).encoders.pan.edge_age_ticks, None, "{age}");
+        assert!(wild(age).encoders.pan.edge_age_ticks.is_some_and(f32::is_nan), "{age}");
     }
     assert_eq!(wild(0.0).lasted_ticks, Some(255.0 / 128.0));
 }
@@ -270,7 +270,7 @@ fn a_body_that_is_spoilt_is_read_as_something_or_not_at_all() {
     let (mut read, mut refused) = (0, 0);
     for _ in 0..200_000 {
         let host = dice.flag();
-        let body = if host { dice.to_board().body() } else { dice.from_board().body() };
+        let body = if host { dice.hosts().body() } else { dice.boards().body() };
         let mut bytes = body.bytes().to_vec();
         match dice.below(4) {
             0 => bytes.truncate(dice.below(bytes.len() as u64 + 1) as usize),

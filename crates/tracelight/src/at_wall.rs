@@ -229,11 +229,7 @@ impl Hands for AtWall<'_> {
                 (self.steps && !self.points).then(|| format!("stroke {} of {of}", stroke + 1))
             }
             Event::NotBegun { why, .. } => Some(why.to_string()),
-            Event::Fault(record) => {
-                let (fault, shown) = (record.fault, record.evidence());
-                let shown = if shown.is_empty() { String::new() } else { format!(" Shown by {shown}.") };
-                Some(format!("fault {}: {}{shown} (C clears it)", fault.code(), fault.row().what))
-            }
+            Event::Fault(record) => Some(format!("fault {record} (C clears it)")),
         };
         self.arms &= !matches!(event, Event::State { to: State::Armed, .. });
         self.print(&event_json(event));

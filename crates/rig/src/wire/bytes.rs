@@ -1,9 +1,9 @@
 //! Numbers to and from bytes, little endian.
 
-/// Most bytes of a frame's body.
+/// Most bytes of a packet's body.
 pub const MOST_BODY: usize = 240;
 
-/// The body of a frame as it is written. What does not fit is left out, and then the whole is not sent.
+/// The body of a packet as it is written. What does not fit is left out, and then the whole is not sent.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
     bytes: [u8; MOST_BODY],
@@ -28,13 +28,13 @@ impl Body {
     }
 
     pub(super) fn slice(&mut self, bytes: &[u8]) {
-        match self.bytes.get_mut(self.length..self.length + bytes.len()) {
-            Some(place) => {
-                place.copy_from_slice(bytes);
-                self.length += bytes.len();
-            }
-            None => self.is_whole = false,
+        let room = self.bytes.get_mut(self.length..).unwrap_or_default();
+        if bytes.len() > room.len() {
+            self.is_whole = false;
+            return;
         }
+        room.iter_mut().zip(bytes).for_each(|(place, byte)| *place = *byte);
+        self.length += bytes.len();
     }
 
     pub(super) fn u8(&mut self, value: u8) {

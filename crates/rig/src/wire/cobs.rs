@@ -1,4 +1,4 @@
-//! Consistent overhead byte stuffing: frames without a zero byte, so that a zero ends each.
+//! Consistent overhead byte stuffing: packets without a zero byte, so that a zero ends each.
 //!
 //! Cheshire and Baker, *Consistent Overhead Byte Stuffing*, IEEE/ACM Transactions on Networking 7 (1999), 159–172.
 
@@ -38,8 +38,12 @@ pub(super) fn unstuff(bytes: &mut [u8]) -> Option<usize> {
         if run == 0 || from + run > bytes.len() {
             return None;
         }
-        bytes.copy_within(from + 1..from + run, to);
-        (from, to) = (from + run, to + run - 1);
+        for _ in 1..run {
+            from += 1;
+            *bytes.get_mut(to)? = *bytes.get(from)?;
+            to += 1;
+        }
+        from += 1;
         // a full run has no zero behind it, nor has the last
         if run <= LONGEST_RUN && from < bytes.len() {
             *bytes.get_mut(to)? = 0;

@@ -1,4 +1,4 @@
-//! CRC-32/ISO-HDLC, that of Ethernet and PNG: of 8640 corrupted frames a day it lets one in 500 000 days pass, a CRC-16 one in eight days.
+//! CRC-32/ISO-HDLC, that of Ethernet and PNG: of 8640 corrupted packets a day it lets one in 500 000 days pass, a CRC-16 one in eight days.
 
 /// Remainders of the sixteen values of four bits: a table of 64 bytes, where one of 256 values would take a kilobyte of a board.
 const TABLE: [u32; 16] = {

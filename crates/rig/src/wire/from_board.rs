@@ -5,7 +5,7 @@ use super::row::{Row, RowBytes};
 use super::{MAGIC, head};
 use crate::{Capabilities, Exceeded, Fault, FaultRecord, Inputs, Joint, PanTilt};
 
-/// What a board says in a frame.
+/// What a board says in a packet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FromBoard<'a> {
     /// What it is: the answer to a greeting, and unasked after a reset.
@@ -66,17 +66,17 @@ pub struct Greeting {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Reset {
-    /// Its supply came.
+    /// The supply came.
     PowerUp = 0,
     /// Somebody pressed its button.
     Button = 1,
-    /// Its program hung.
+    /// The program hung.
     Watchdog = 2,
-    /// Its supply was too low for a moment.
+    /// The supply was too low for a moment.
     BrownOut = 3,
-    /// It was told to, as after another program was loaded.
+    /// Somebody told it to, as after another program was loaded.
     Told = 4,
-    /// It does not know.
+    /// Nobody knows.
     Unknown = 5,
 }
 
@@ -104,7 +104,7 @@ pub struct Configured {
 pub enum WrongConfiguration {
     /// Its bytes are not those whose checksum was told; this is the checksum of what came.
     Checksum(u32),
-    /// It is too short or too long: this many bytes are needed.
+    /// Too short or too long: this many bytes are needed.
     Length(u16),
     /// This word of it, counted from 0, has a value that it cannot have.
     Word {
@@ -143,7 +143,7 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// As the body of a frame: as many rows from the first on as fit, and how many those are.
+    /// As the body of a packet: as many rows from the first on as fit, and how many those are.
     pub fn body<'r>(
         (first_tick, wanted, free): (u32, u16, u16),
         rows: impl IntoIterator<Item = &'r RowBytes> + Clone,
@@ -180,7 +180,7 @@ mod kind {
 }
 
 impl<'a> FromBoard<'a> {
-    /// As the body of a frame.
+    /// As the body of a packet.
     pub fn body(&self) -> Body {
         let mut body = Body::new();
         match self {

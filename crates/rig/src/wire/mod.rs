@@ -2,28 +2,28 @@
 //!
 //! ```text
 //! host                                                                 board
-//! ToBoard ─► Body ─► framed ─► bytes ─► Frames ─► body ─► ToBoard::read
-//! FromBoard::read ◄─ body ◄─ Frames ◄─ bytes ◄─ framed ◄─ Body ◄─ FromBoard
+//! ToBoard ─► Body ─► packed ─► bytes ─► Packets ─► body ─► ToBoard::read
+//! FromBoard::read ◄─ body ◄─ Packets ◄─ bytes ◄─ packed ◄─ Body ◄─ FromBoard
 //! ```
 //!
-//! - A **frame** is a body and its CRC-32, stuffed so that it has no zero byte (COBS), with a zero at the end.
+//! - A **packet** is a body and its CRC-32, stuffed so that it has no zero byte (COBS), with a zero at the end.
 //! - **Commands** carry a sequence number. The board takes them in order and says which it wants next; what is lost is sent again. The rows of
 //!   its report say how many it took before each tick, so that a host knows what the controller knew in every tick.
 //! - **Disarm and keep-alive** need no turn: they act when they arrive.
-//! - Whatever is wrong with a frame, it is as if it had not come. Silence darkens.
+//! - Whatever is wrong with a packet, it is as if it had not come. Silence darkens.
 
 mod bytes;
 mod cobs;
 mod crc;
-mod frame;
 mod from_board;
+mod packet;
 mod row;
 mod to_board;
 
 pub use bytes::{Body, MOST_BODY};
 pub use crc::crc32;
-pub use frame::{Frames, MOST_FRAME, framed};
 pub use from_board::{Configured, FromBoard, Greeting, Reset, Rows, WrongConfiguration};
+pub use packet::{MOST_PACKET, Packets, packed};
 pub use row::{Row, RowBytes, as_told};
 pub use to_board::{Ask, Order, ToBoard};
 

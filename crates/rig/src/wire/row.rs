@@ -22,7 +22,7 @@ pub struct Row {
     pub homed: bool,
     /// Orders that were taken before this tick, after a keep-alive and before a Disarm.
     pub taken: u8,
-    /// The last of them was void.
+    /// The one of them that lets light out was void; there is one a tick at most.
     pub void: bool,
     /// A keep-alive came before this tick.
     pub heard: bool,
@@ -34,8 +34,9 @@ pub struct Row {
 const BYTES: usize = 32;
 /// Bytes of a row with them.
 const MOST_BYTES: usize = BYTES + 12;
-/// Stamp of an encoder that has none; the others are 65536ths of a tick.
+/// Stamp of an encoder that has none, and one that is not within a tick; the others are 65536ths of it.
 const NO_STAMP: u16 = u16::MAX;
+const WRONG_STAMP: u16 = u16::MAX - 1;
 const STAMPS_A_TICK: f32 = 65536.0;
 /// Steps of a tick's length; 0 where it is not measured.
 const STEPS_A_TICK: f32 = 128.0;
@@ -57,7 +58,7 @@ mod bit {
 }
 const PHASE: u32 = 7;
 
-/// What a head sensed as a row tells it: stamps in 65536ths of a tick, a tick's length in 128ths, 255 at most. A controller that is given this can be followed by
+/// What a head sensed as a row tells it: stamps in 65536ths of a tick, no number where they are not within it, a tick's length in 128ths, 255 at most. A controller that is given this can be followed by
 /// another one that reads the rows.
 pub fn as_told(sensed: &Sensed) -> Sensed {
     let stamped = |measured: Measurement| {
@@ -73,14 +74,20 @@ pub fn as_told(sensed: &Sensed) -> Sensed {
 }
 
 fn stamp(age_ticks: Option<f32>) -> u16 {
-    // the cast is down, and what is not within it is none
-    age_ticks
-        .filter(|age| (0.0..1.0).contains(age))
-        .map_or(NO_STAMP, |age| ((age * STAMPS_A_TICK) as u16).min(NO_STAMP - 1))
+    match age_ticks {
+        None => NO_STAMP,
+        // the cast is down
+        Some(age) if (0.0..1.0).contains(&age) => ((age * STAMPS_A_TICK) as u16).min(WRONG_STAMP - 1),
+        Some(_) => WRONG_STAMP,
+    }
 }
 
 fn stamp_of(stamp: u16) -> Option<f32> {
-    (stamp != NO_STAMP).then(|| f32::from(stamp) / STAMPS_A_TICK)
+    match stamp {
+        NO_STAMP => None,
+        WRONG_STAMP => Some(f32::NAN),
+        _ => Some(f32::from(stamp) / STAMPS_A_TICK),
+    }
 }
 
 fn length(lasted_ticks: Option<f32>) -> u8 {
@@ -95,19 +102,20 @@ fn length_of(length: u8) -> Option<f32> {
 
 /// A row as it is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RowBytes {
-    bytes: [u8; MOST_BYTES],
-    has_foot: bool,
-}
+pub struct RowBytes([u8; MOST_BYTES]);
 
 impl RowBytes {
     /// Of no row.
-    pub const NONE: Self = Self { bytes: [0; MOST_BYTES], has_foot: false };
+    pub const NONE: Self = Self([0; MOST_BYTES]);
 
     /// Its bytes.
     pub fn bytes(&self) -> &[u8] {
-        let (without, _) = self.bytes.split_at_checked(BYTES).unwrap_or_default();
-        if self.has_foot { &self.bytes } else { without }
+        /// The upper byte of its bits.
+        const AT: usize = 27;
+        let Self(bytes) = self;
+        let has_foot = bytes.get(AT).is_some_and(|&byte| u16::from(byte) << 8 & bit::FOOT != 0);
+        let (without, _) = bytes.split_at_checked(BYTES).unwrap_or_default();
+        if has_foot { bytes } else { without }
     }
 }
 
@@ -138,10 +146,9 @@ impl Row {
             up.to_bits(),
         ];
         let mut bytes = [0; MOST_BYTES];
-        for (place, word) in bytes.chunks_exact_mut(4).zip(words) {
-            place.copy_from_slice(&word.to_le_bytes());
-        }
-        RowBytes { bytes, has_foot: sensed.foot_rad_s.is_some() }
+        let told = words.into_iter().flat_map(u32::to_le_bytes);
+        bytes.iter_mut().zip(told).for_each(|(place, byte)| *place = byte);
+        RowBytes(bytes)
     }
 
     fn bits(&self) -> u16 {

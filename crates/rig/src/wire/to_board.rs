@@ -4,7 +4,7 @@ use super::bytes::{Body, Rest};
 use super::{MAGIC, head};
 use crate::{Command, PanTilt, RateLimit, Segment};
 
-/// What a host says in a frame.
+/// What a host says in a packet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToBoard<'a> {
     /// Greets, first of all and after any silence; sequence numbers begin at 0 with it. The rig is disarmed by it.
@@ -68,9 +68,9 @@ pub struct Order {
 /// What an order asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ask {
-    /// [`Command::Arm`], void unless the number is greater than that of all before it, since power-up: a frame that is said again does not arm.
+    /// [`Command::Arm`], void unless the number is greater than that of all before it, since power-up: a packet that is said again does not arm.
     Arm {
-        /// That number.
+        /// The number.
         nonce: u32,
         /// Latest fault that was read.
         acknowledges: u32,
@@ -106,7 +106,7 @@ mod kind {
 }
 
 impl<'a> ToBoard<'a> {
-    /// As the body of a frame.
+    /// As the body of a packet.
     pub fn body(&self) -> Body {
         let mut body = Body::new();
         match *self {
@@ -203,7 +203,7 @@ impl Order {
             }
             Ask::Command(Command::Pause) => begin(kind::PAUSE),
             Ask::Command(Command::Abandon) => begin(kind::ABANDON),
-            // these have frames of their own
+            // these have packets of their own
             Ask::Command(Command::Arm { .. } | Command::Disarm | Command::KeepAlive) => {}
         }
     }

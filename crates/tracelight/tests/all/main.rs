@@ -54,4 +54,5 @@ mod standing;
 mod support;
 mod where_on_wall;
 mod whole_rig;
+mod wire_page;
 mod wrong_lines;

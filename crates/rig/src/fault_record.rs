@@ -2,7 +2,9 @@
 
 use core::fmt;
 
-use crate::{Fault, Joint};
+use crate::fault::Fault;
+use crate::fault::row::Measure;
+use crate::joint::Joint;
 
 /// A latched fault with what showed it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,45 +28,6 @@ pub struct Exceeded {
     pub value: f32,
     /// What it may be.
     pub bound: f32,
-}
-
-/// What a fault measures, for words.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Measure {
-    /// Unit in which it is told.
-    pub unit: &'static str,
-    /// What it is; no sentence.
-    pub what: &'static str,
-    /// How many of that unit are one of the base unit: ticks, radians, counts or shares.
-    pub factor: f32,
-    /// Digits after the point.
-    pub digits: u8,
-}
-
-impl Measure {
-    /// Of faults that are no number's.
-    pub const NONE: Self = Self { unit: "", what: "", factor: 1.0, digits: 0 };
-
-    /// Counts of an encoder.
-    pub(super) const fn counts(what: &'static str) -> Self {
-        Self { unit: "counts", what, factor: 1.0, digits: 1 }
-    }
-
-    /// Ticks, told in ms.
-    pub(super) const fn ticks(what: &'static str) -> Self {
-        Self { unit: "ms", what, factor: 1.0, digits: 1 }
-    }
-
-    /// Radians, told in degrees.
-    pub(super) const fn angle(what: &'static str) -> Self {
-        Self { unit: "degrees", what, factor: 180.0 / core::f32::consts::PI, digits: 2 }
-    }
-
-    /// A share, told in percent.
-    pub(super) const fn share(what: &'static str) -> Self {
-        Self { unit: "%", what, factor: 100.0, digits: 1 }
-    }
 }
 
 /// A value past its bound, in the unit in which it is told.
@@ -103,6 +66,13 @@ impl Evidence<'_> {
     /// Whether there is nothing to print.
     pub const fn is_empty(&self) -> bool {
         self.0.joint.is_none() && self.0.exceeded.is_none()
+    }
+}
+
+impl fmt::Display for FaultRecord {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.fault.code(), self.fault.row().what)?;
+        if self.evidence().is_empty() { Ok(()) } else { write!(f, " Shown by {}.", self.evidence()) }
     }
 }
 

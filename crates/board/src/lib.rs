@@ -1,0 +1,29 @@
+//! The program of a board that drives a head: everything but its pins.
+//!
+//! ```text
+//! bytes ─► Server ── orders ─► Machine ◄── senses
+//! bytes ◄─ Server ◄── rows ─── Machine ──► actuation
+//! ```
+//!
+//! The [`Machine`] is what happens every millisecond: the controller, and which orders it takes before each tick. The [`Server`] speaks with the host. A
+//! board's firmware runs the one in its timer's interrupt and the other in its main loop, and hands values from one to the other; [`Board`] holds both for
+//! whoever has one thread. `no_std`, `f32`, no allocation, no panic.
+//!
+//! Dark is what it is at a reset, without a configuration, with one whose checksum is wrong, and without a host. Nothing but an Arm of a host that is there,
+//! by a number that was never used before, ends that.
+
+#![no_std]
+
+mod board;
+mod configuration;
+mod law;
+mod machine;
+mod orders;
+mod ring;
+mod server;
+
+pub use board::Board;
+pub use configuration::{MOST_CONFIGURATION, read_configuration, write_configuration};
+pub use law::law_hash;
+pub use machine::{Inbox, MOST_ORDERS_A_TICK, Machine, May, NewConfiguration, Told};
+pub use server::{Identity, Server};

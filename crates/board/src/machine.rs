@@ -1,0 +1,187 @@
+//! What happens every tick.
+
+use tracelight_control::{Config, Controller, State};
+use tracelight_rig::wire::{Ask, Order, Row, RowBytes, as_told, is_before};
+use tracelight_rig::{Actuation, Command, FaultRecord, PanTilt, Phase, Sensed, Telemetry};
+
+/// Orders that are taken before a tick at most: each takes some of its time.
+pub const MOST_ORDERS_A_TICK: u8 = 8;
+
+/// What came for a tick, beside orders.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Inbox {
+    /// A keep-alive.
+    pub heard: bool,
+    /// A Disarm: of the orders before that number those that let light out are void if they come later.
+    pub disarm: Option<u16>,
+    /// A configuration with which the controller begins anew.
+    pub configuration: Option<NewConfiguration>,
+}
+
+/// A configuration that is to be in force.
+#[derive(Clone, Copy, Debug)]
+pub struct NewConfiguration {
+    /// What the controller is told.
+    pub config: Config,
+    /// Whether the encoders know where they are.
+    pub is_absolute: bool,
+    /// Whether it is the one that was in force before, by which a head that was homed stays so.
+    pub is_same: bool,
+}
+
+/// What orders may be taken now.
+#[derive(Clone, Copy, Debug)]
+pub struct May {
+    /// A segment.
+    pub append: bool,
+    /// One that lets light out.
+    pub light: bool,
+}
+
+/// What a tick was, for the host.
+#[derive(Clone, Copy, Debug)]
+pub struct Told {
+    /// Number of the tick since power-up.
+    pub tick: u32,
+    /// All that a host needs to do it again.
+    pub row: RowBytes,
+    /// Segments that there is room for.
+    pub free: u16,
+    /// Supervisor's state.
+    pub phase: Phase,
+    /// The latched fault.
+    pub latched: Option<FaultRecord>,
+    /// In the first tick of a configuration: counts at which the head was told to stand, if it kept its homing.
+    pub began: Option<Option<PanTilt<i32>>>,
+}
+
+/// The controller, and which orders it takes.
+#[derive(Clone, Debug)]
+pub struct Machine<const SEGMENTS: usize> {
+    running: Option<(Controller, State<SEGMENTS>)>,
+    /// Ticks since power-up.
+    tick: u32,
+    /// Number of the last Arm that was taken.
+    nonce: u32,
+    /// Orders before it that let light out are void.
+    void_before: Option<u16>,
+}
+
+impl<const SEGMENTS: usize> Machine<SEGMENTS> {
+    /// At power-up.
+    pub const fn new() -> Self {
+        Self { running: None, tick: 0, nonce: 0, void_before: None }
+    }
+
+    /// Number of the tick that comes next.
+    pub const fn tick_number(&self) -> u32 {
+        self.tick
+    }
+
+    /// Number of the last Arm that was taken.
+    pub const fn nonce(&self) -> u32 {
+        self.nonce
+    }
+
+    /// What the controller remembers; `None` without a configuration.
+    pub fn state(&self) -> Option<&State<SEGMENTS>> {
+        self.running.as_ref().map(|(_, state)| state)
+    }
+
+    /// One tick: takes what came, `next` order by order, and lets the controller run. `next` is told what it may give: a segment only if there is room for one, and
+    /// one order a tick that lets light out. Without a configuration nothing moves and nothing is lit, and there is nothing to tell.
+    pub fn tick(
+        &mut self,
+        sensed: &Sensed,
+        inbox: &Inbox,
+        mut next: impl FnMut(May) -> Option<Order>,
+    ) -> (Actuation, Option<Told>) {
+        let tick = self.tick;
+        self.tick = tick.wrapping_add(1);
+        let sensed = as_told(sensed);
+        let began = inbox.configuration.as_ref().map(|new| self.begin(new, &sensed, tick));
+        let Some((controller, state)) = &mut self.running else { return (Actuation::default(), None) };
+        if inbox.heard {
+            // none of what is taken here can fail for want of room
+            let _ = controller.accept(state, Command::KeepAlive);
+        }
+        let (mut taken, mut void, mut may_light) = (0, false, true);
+        while taken < MOST_ORDERS_A_TICK
+            && let Some(order) = next(May { append: state.room() > 0, light: may_light })
+        {
+            taken += 1;
+            // one a tick, so that a row tells whether it was void
+            may_light &= !order.ask.lights();
+            self.void_before = self.void_before.filter(|&before| is_before(order.sequence, before));
+            if order.ask.lights() && self.void_before.is_some() {
+                void = true;
+            } else {
+                void |= !obey(controller, state, order.ask, &mut self.nonce);
+            }
+        }
+        if let Some(before) = inbox.disarm {
+            let _ = controller.accept(state, Command::Disarm);
+            self.void_before = Some(before);
+        }
+        let telemetry = controller.tick(state, &sensed);
+        let row = row(&sensed, &telemetry, (taken, void), inbox);
+        let free = u16::try_from(state.room()).unwrap_or(u16::MAX);
+        let Telemetry { actuation, phase, latched, .. } = telemetry;
+        (actuation, Some(Told { tick, row: row.told(), free, phase, latched, began }))
+    }
+
+    /// Begins anew with a configuration; the counts at which the head is told to stand, if it was homed and is held to be where it was.
+    fn begin(&mut self, new: &NewConfiguration, sensed: &Sensed, tick: u32) -> Option<PanTilt<i32>> {
+        let home =
+            self.running.as_ref().and_then(|(_, state)| state.homed_at(sensed)).filter(|_| new.is_same);
+        let controller = Controller::new(new.config);
+        let state = if new.is_absolute { controller.start_homed(sensed) } else { controller.start(sensed) };
+        let mut state: State<SEGMENTS> = state.counting_from(tick);
+        let kept = home.filter(|&home| controller.accept(&mut state, Command::Home(home)).is_ok());
+        self.running = Some((controller, state));
+        self.void_before = None;
+        kept
+    }
+}
+
+impl<const SEGMENTS: usize> Default for Machine<SEGMENTS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Does what an order asks; false if it is an Arm with a number that is not greater than all before it.
+fn obey<const SEGMENTS: usize>(
+    controller: &Controller,
+    state: &mut State<SEGMENTS>,
+    ask: Ask,
+    last_nonce: &mut u32,
+) -> bool {
+    let command = match ask {
+        Ask::Arm { nonce, .. } if nonce <= *last_nonce => return false,
+        Ask::Arm { nonce, acknowledges } => {
+            *last_nonce = nonce;
+            Command::Arm { acknowledges }
+        }
+        Ask::Command(command) => command,
+    };
+    // a head that cannot be homed now says so by not being homed
+    let _ = controller.accept(state, command);
+    true
+}
+
+fn row(sensed: &Sensed, telemetry: &Telemetry, (taken, void): (u8, bool), inbox: &Inbox) -> Row {
+    Row {
+        sensed: *sensed,
+        plan_tick: telemetry.plan_tick,
+        actuation: telemetry.actuation,
+        darkness: telemetry.darkness,
+        phase: telemetry.phase,
+        fault: telemetry.fault(),
+        homed: telemetry.homed,
+        taken,
+        void,
+        heard: inbox.heard,
+        disarmed: inbox.disarm.is_some(),
+    }
+}

@@ -1,0 +1,438 @@
+use std::collections::{BTreeMap, VecDeque};
+
+use tracelight_board::{MOST_CONFIGURATION, law_hash, write_configuration};
+use tracelight_control::Config;
+use tracelight_rig::wire::{
+    Ask, Configured, FromBoard, Greeting, MOST_PACKET, Packets, Rows, ToBoard, VERSION, crc32, packed,
+};
+use tracelight_rig::{Command, Telemetry};
+
+use crate::clock::Clock;
+use crate::outbox::Outbox;
+use crate::trouble::Trouble;
+use crate::twin::{MOST_SEGMENTS, Start, Twin};
+
+/// How often a board is greeted that does not answer, µs.
+const GREET_AGAIN_US: u64 = 100_000;
+/// How often a configuration is sent that is not answered, µs.
+const CONFIGURE_AGAIN_US: u64 = 250_000;
+/// How long a board may be silent while it is greeted or configured, µs.
+const MOST_SILENT_US: u64 = 3_000_000;
+/// Bytes of a configuration in a packet.
+const PIECE: usize = 200;
+/// How often a host says that it is there, µs.
+const KEEP_ALIVE_US: u64 = 5_000;
+/// For how long who drives it counts as being there, µs: he may be waiting for a row that is lost.
+const ALIVE_US: u64 = 40_000;
+/// How often a Disarm is said that is not confirmed, µs.
+const DISARM_AGAIN_US: u64 = 5_000;
+/// How often lost rows are asked for, µs.
+const ROWS_AGAIN_US: u64 = 10_000;
+/// Length of a tick, ns and µs.
+const TICK_NS: u32 = 1_000_000;
+const TICK_US: f64 = 1000.0;
+/// How long rows may be missing that are asked for, µs.
+const MOST_MISSING_US: u64 = 3_000_000;
+/// Rows that are kept ahead of one that is missing.
+const MOST_AHEAD: u32 = 1 << 14;
+
+/// How far a host and its board are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stage {
+    /// The host greets.
+    Greeting,
+    /// The host sends the configuration.
+    Configuring,
+    /// The board's controller runs.
+    Running,
+    /// Something is wrong, and the board was told to be dark.
+    Failed(Trouble),
+}
+
+/// A host's side of the wire. It does no I/O: bytes and the time are handed in.
+#[derive(Clone, Debug)]
+pub struct Host {
+    config: Config,
+    configuration: Vec<u8>,
+    packets: Packets,
+    stage: Stage,
+    session: u32,
+    board: Option<Greeting>,
+    outbox: Outbox,
+    twin: Option<Twin>,
+    /// Rows that came, by their tick after the next one.
+    rows: BTreeMap<u32, tracelight_rig::wire::Row>,
+    next_tick: u32,
+    /// Tick of the greeting after which orders are numbered anew.
+    begins_again: Option<u32>,
+    telemetry: VecDeque<Telemetry>,
+    /// Number before which orders that let light out are void, until the board says that it is disarmed.
+    disarm: Option<u16>,
+    is_alive: bool,
+    seen: Option<u32>,
+    remarks: VecDeque<String>,
+    clock: Clock,
+    times: Times,
+}
+
+/// When something was done last, µs.
+#[derive(Clone, Copy, Debug, Default)]
+struct Times {
+    /// Something came.
+    heard: Option<u64>,
+    greeted: Option<u64>,
+    configured: Option<u64>,
+    /// Whoever drives it said that he is there.
+    said: Option<u64>,
+    alive: Option<u64>,
+    disarmed: Option<u64>,
+    asked: Option<u64>,
+    /// Rows are missing since then.
+    missing: Option<u64>,
+}
+
+/// Whether something is due that is to be done every so often.
+fn is_due(last: &mut Option<u64>, now_us: u64, every_us: u64) -> bool {
+    let due = last.is_none_or(|last| now_us.saturating_sub(last) >= every_us);
+    if due {
+        *last = Some(now_us);
+    }
+    due
+}
+
+impl Host {
+    /// Of a head that is configured so. The number is one that no connection had before.
+    pub fn new(config: Config, session: u32) -> Self {
+        let mut bytes = [0; MOST_CONFIGURATION];
+        // a test holds every configuration to that size
+        let length = write_configuration(&config, &mut bytes).unwrap_or_default();
+        Self {
+            config,
+            configuration: bytes[..length].to_vec(),
+            packets: Packets::new(),
+            stage: Stage::Greeting,
+            session,
+            board: None,
+            outbox: Outbox::default(),
+            twin: None,
+            rows: BTreeMap::new(),
+            next_tick: 0,
+            begins_again: None,
+            telemetry: VecDeque::new(),
+            disarm: None,
+            is_alive: false,
+            seen: None,
+            remarks: VecDeque::new(),
+            clock: Clock::default(),
+            times: Times::default(),
+        }
+    }
+
+    /// How far it is.
+    pub const fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// What the board is, once it has answered.
+    pub const fn board(&self) -> Option<&Greeting> {
+        self.board.as_ref()
+    }
+
+    /// When the board's ticks are.
+    pub const fn clock(&self) -> &Clock {
+        &self.clock
+    }
+
+    /// The board's controller, as it is known here.
+    pub const fn twin(&self) -> Option<&Twin> {
+        self.twin.as_ref()
+    }
+
+    /// For how long nothing came, µs.
+    pub fn silent_us(&self, now_us: u64) -> u64 {
+        self.times.heard.map_or(0, |heard| now_us.saturating_sub(heard))
+    }
+
+    /// Stretches of bytes that were no packet.
+    pub const fn spoilt(&self) -> u32 {
+        self.packets.spoilt()
+    }
+
+    /// The next tick that was followed.
+    pub fn telemetry(&mut self) -> Option<Telemetry> {
+        self.telemetry.pop_front()
+    }
+
+    /// The next remark of the board for people.
+    pub fn remark(&mut self) -> Option<String> {
+        self.remarks.pop_front()
+    }
+
+    /// Greets anew, as after a cable was pulled: the board is dark, knows where its head is if it kept its power, and goes on once somebody arms.
+    pub fn connect_again(&mut self, session: u32) {
+        self.session = session;
+        self.stage = Stage::Greeting;
+        self.packets = Packets::new();
+        self.disarm = None;
+        self.times = Times::default();
+    }
+
+    /// Hands a command over.
+    ///
+    /// # Errors
+    /// The command, if there is no room for it, the board would refuse it, or it does not run.
+    pub fn send(&mut self, command: Command) -> Result<(), Command> {
+        let ask = match command {
+            Command::KeepAlive => {
+                self.is_alive = true;
+                return Ok(());
+            }
+            Command::Disarm => {
+                self.disarm = Some(self.outbox.next());
+                self.times.disarmed = None;
+                return Ok(());
+            }
+            _ if self.stage != Stage::Running || self.begins_again.is_some() => return Err(command),
+            Command::Home(_) if self.twin.as_ref().is_some_and(|twin| twin.refuses(command)) => {
+                return Err(command);
+            }
+            Command::Arm { acknowledges } => {
+                let Some(board) = &mut self.board else { return Err(command) };
+                board.nonce = board.nonce.saturating_add(1);
+                Ask::Arm { nonce: board.nonce, acknowledges }
+            }
+            _ => Ask::Command(command),
+        };
+        if !self.outbox.has_room(ask) {
+            return Err(command);
+        }
+        self.outbox.push(ask);
+        Ok(())
+    }
+
+    /// What is to be sent now.
+    pub fn give(&mut self, now_us: u64, out: &mut Vec<u8>) {
+        let mut packet = [0; MOST_PACKET];
+        let mut say = |said: ToBoard<'_>| {
+            let length = packed(said.body().bytes(), &mut packet);
+            out.extend_from_slice(&packet[..length]);
+        };
+        match self.stage {
+            Stage::Greeting => {
+                let since = *self.times.heard.get_or_insert(now_us);
+                if now_us.saturating_sub(since) > MOST_SILENT_US {
+                    self.stage = Stage::Failed(Trouble::Silent { waited_us: now_us - since });
+                } else if is_due(&mut self.times.greeted, now_us, GREET_AGAIN_US) {
+                    let mut program = [0; 8];
+                    let version = env!("CARGO_PKG_VERSION").bytes();
+                    program.iter_mut().zip(version).for_each(|(place, byte)| *place = byte);
+                    say(ToBoard::Hello { version: VERSION, session: self.session, program });
+                }
+            }
+            Stage::Configuring => {
+                let since = *self.times.heard.get_or_insert(now_us);
+                if now_us.saturating_sub(since) > MOST_SILENT_US {
+                    self.stage = Stage::Failed(Trouble::Silent { waited_us: now_us - since });
+                } else if is_due(&mut self.times.configured, now_us, CONFIGURE_AGAIN_US) {
+                    for (number, bytes) in self.configuration.chunks(PIECE).enumerate() {
+                        // some kilobytes at most
+                        let offset = (number * PIECE) as u16;
+                        say(ToBoard::Configure { offset, bytes });
+                    }
+                    let (length, crc) = (self.configuration.len() as u16, crc32(&self.configuration));
+                    say(ToBoard::Commit { length, crc });
+                }
+            }
+            Stage::Running => {
+                // nothing is armed for a host that was not heard before
+                if core::mem::take(&mut self.is_alive) {
+                    self.times.said = Some(now_us);
+                }
+                let is_alive = self.times.said.is_some_and(|said| now_us.saturating_sub(said) <= ALIVE_US);
+                if is_alive && is_due(&mut self.times.alive, now_us, KEEP_ALIVE_US) {
+                    say(ToBoard::KeepAlive { host_us: now_us });
+                }
+                // what was asked before a Disarm goes before it, what was asked after it waits until it acted
+                while let Some(order) = self.outbox.send(now_us, self.disarm) {
+                    say(ToBoard::Order(order));
+                }
+                if let Some(before) = self.disarm
+                    && is_due(&mut self.times.disarmed, now_us, DISARM_AGAIN_US)
+                {
+                    say(ToBoard::Disarm { before });
+                }
+                if let Some((from, count)) = self.missing() {
+                    let since = *self.times.missing.get_or_insert(now_us);
+                    if is_due(&mut self.times.asked, now_us, ROWS_AGAIN_US) {
+                        say(ToBoard::Again { from, count });
+                    }
+                    if now_us.saturating_sub(since) > MOST_MISSING_US {
+                        let to = from.wrapping_add(count.into());
+                        self.stage = Stage::Failed(Trouble::LostRows { from, to });
+                    }
+                } else {
+                    self.times.missing = None;
+                }
+                if let Some(number) = self.seen.take() {
+                    say(ToBoard::Seen { number });
+                }
+            }
+            Stage::Failed(_) => {
+                if is_due(&mut self.times.disarmed, now_us, DISARM_AGAIN_US) {
+                    say(ToBoard::Disarm { before: self.outbox.next() });
+                }
+            }
+        }
+    }
+
+    /// Takes bytes of the board.
+    pub fn take(&mut self, bytes: &[u8], now_us: u64) {
+        for &byte in bytes {
+            let Some(body) = self.packets.push(byte) else { continue };
+            // the packet's bytes are in the way of what it does
+            let mut said = [0; tracelight_rig::wire::MOST_BODY];
+            let length = body.len();
+            said[..length].copy_from_slice(body);
+            if let Some(said) = FromBoard::read(&said[..length])
+                && let Err(trouble) = self.hear(said, now_us)
+            {
+                self.stage = Stage::Failed(trouble);
+                self.times.disarmed = None;
+            }
+        }
+    }
+
+    fn hear(&mut self, said: FromBoard<'_>, now_us: u64) -> Result<(), Trouble> {
+        match (said, self.stage) {
+            (_, Stage::Failed(_)) => {}
+            (FromBoard::Hello(board), Stage::Greeting) if board.session == self.session => {
+                self.times.heard = Some(now_us);
+                self.meet(board)?;
+            }
+            // unasked: it has started anew
+            (FromBoard::Hello(board), Stage::Running) if board.session == 0 => return Err(Trouble::Reset),
+            (FromBoard::Configured(answer), Stage::Configuring) => {
+                self.times.heard = Some(now_us);
+                self.begin(answer.map_err(Trouble::Configuration)?)?;
+            }
+            (FromBoard::Rows(rows), Stage::Running) => {
+                self.times.heard = Some(now_us);
+                self.keep(&rows, now_us);
+                self.follow()?;
+            }
+            (FromBoard::Pong { host_us, tick, tick_us }, _) => {
+                self.clock.hear(host_us, now_us, f64::from(tick) * TICK_US + f64::from(tick_us));
+            }
+            (FromBoard::Fault(record), Stage::Running) => self.seen = Some(record.number),
+            (FromBoard::Log(text), _) => self.remarks.push_back(text.to_owned()),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The board has answered: it is configured, or goes on where it was.
+    fn meet(&mut self, board: Greeting) -> Result<(), Trouble> {
+        if board.version.0 != VERSION.0 {
+            return Err(Trouble::Version { board: board.version });
+        }
+        if board.tick_ns != TICK_NS {
+            return Err(Trouble::TickLength { board_ns: board.tick_ns });
+        }
+        if usize::from(board.segments) > MOST_SEGMENTS {
+            return Err(Trouble::Segments { board: board.segments });
+        }
+        let before = self.board.replace(board);
+        if self.twin.is_none() {
+            self.stage = Stage::Configuring;
+            return Ok(());
+        }
+        let crc = crc32(&self.configuration);
+        let is_same = before.is_some_and(|before| before.id == board.id) && board.configuration == Some(crc);
+        if !is_same || is_earlier(board.tick, self.next_tick) {
+            return Err(Trouble::Reset);
+        }
+        let missed = board.tick.wrapping_sub(self.next_tick);
+        if missed > u32::from(board.rows) {
+            let to = board.tick.wrapping_sub(board.rows.into());
+            return Err(Trouble::LostRows { from: self.next_tick, to });
+        }
+        self.begins_again = Some(board.tick);
+        self.stage = Stage::Running;
+        Ok(())
+    }
+
+    /// The configuration is in force.
+    fn begin(&mut self, configured: Configured) -> Result<(), Trouble> {
+        let Configured { crc, tick, law, home } = configured;
+        if crc != crc32(&self.configuration) {
+            // of an earlier connection
+            return Ok(());
+        }
+        let host = law_hash(&self.config);
+        if law != host {
+            return Err(Trouble::Law { host, board: law });
+        }
+        let is_absolute = self.board.is_some_and(|board| board.capabilities.absolute);
+        self.twin = Some(Twin::new(self.config, Start { tick, is_absolute, home }));
+        self.next_tick = tick;
+        self.rows.clear();
+        self.stage = Stage::Running;
+        Ok(())
+    }
+
+    /// Keeps rows until their turn comes.
+    fn keep(&mut self, rows: &Rows<'_>, now_us: u64) {
+        if self.begins_again.is_none() {
+            self.outbox.hear(rows.wanted, rows.free, now_us);
+        }
+        let inputs = self.board.map(|board| board.capabilities.inputs).unwrap_or_default();
+        for (tick, row) in rows.rows(inputs) {
+            if tick.wrapping_sub(self.next_tick) < MOST_AHEAD {
+                self.rows.insert(tick, row);
+            }
+        }
+    }
+
+    /// Follows the rows whose turn it is.
+    fn follow(&mut self) -> Result<(), Trouble> {
+        let Some(twin) = &mut self.twin else { return Ok(()) };
+        loop {
+            if self.begins_again == Some(self.next_tick) {
+                self.outbox.begin_again();
+                self.begins_again = None;
+            }
+            let Some(row) = self.rows.remove(&self.next_tick) else { break };
+            let Some(orders) = self.outbox.take(row.taken) else {
+                return Err(Trouble::Diverged(crate::trouble::Divergence {
+                    tick: self.next_tick,
+                    what: "number of orders taken",
+                    host: 0.0,
+                    board: row.taken.into(),
+                }));
+            };
+            if row.disarmed {
+                self.disarm = None;
+            }
+            self.telemetry.push_back(twin.follow(self.next_tick, &row, &orders)?);
+            self.times.missing = None;
+            self.next_tick = self.next_tick.wrapping_add(1);
+        }
+        Ok(())
+    }
+
+    /// From the first row that did not come up to the last one that did, or up to a new greeting: what is lost in between is rarely alone.
+    fn missing(&self) -> Option<(u32, u16)> {
+        let to = self.begins_again.or_else(|| {
+            // ticks wrap: the last one is before the next one then
+            let last = self.rows.range(..self.next_tick).next_back().or_else(|| self.rows.iter().next_back());
+            last.map(|(&tick, _)| tick)
+        })?;
+        let count = to.wrapping_sub(self.next_tick);
+        (count > 0).then(|| (self.next_tick, u16::try_from(count).unwrap_or(u16::MAX)))
+    }
+}
+
+/// Whether a tick is before another one, across their wrap.
+const fn is_earlier(tick: u32, other: u32) -> bool {
+    tick.wrapping_sub(other) >= 1 << 31
+}
