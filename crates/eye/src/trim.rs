@@ -147,7 +147,7 @@ mod tests {
         let segments = segments();
         let mut feeder = Feeder::new(&segments, false);
         let (mut trimmer, mut wire) = (Trimmer::default(), Wire::default());
-        feeder.feed_trimmed(&mut wire, 0, &mut trimmer);
+        (0..3).for_each(|_| feeder.feed_trimmed(&mut wire, 0, &mut trimmer));
         assert_eq!(sent(&wire), segments[..6]);
         (0..2000).for_each(|tick| feeder.feed_trimmed(&mut wire, tick, &mut trimmer));
         assert_eq!(sent(&wire), segments);

@@ -1,6 +1,8 @@
 use tracelight_maths::sin;
 use tracelight_rig::Measurement;
 
+/// Steps of an edge's stamp.
+const STAMPS_A_TICK: f64 = 65536.0;
 /// Number of edges after which a quadrature encoder's misplacements repeat.
 const PHASES: usize = 4;
 
@@ -137,7 +139,9 @@ impl Encoder {
         if self.edge_stamps {
             let left = (to_rad - edge_rad) / (to_rad - from_rad);
             let age = end_age_ticks + left.clamp(0.0, 1.0) * length_ticks;
-            self.edge_age_ticks = Some((age as f32).clamp(0.0, 1.0 - f32::EPSILON));
+            // a stamp is a counter's value: these are what a wire carries, and finer than any timer's
+            let steps = (age * STAMPS_A_TICK).floor().clamp(0.0, STAMPS_A_TICK - 3.0);
+            self.edge_age_ticks = Some((steps / STAMPS_A_TICK) as f32);
         }
     }
 

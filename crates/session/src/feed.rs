@@ -2,6 +2,9 @@
 
 use tracelight_rig::{Command, Rig, Segment};
 
+/// Segments that are sent in a tick at most: a board has other things to do in one, and no plan has so many.
+const MOST_A_TICK: u32 = 4;
+
 /// Moves segments on their way to the rig, by what is known only while the job runs: a camera's trim.
 pub trait Trim {
     /// How far ahead of the plan's clock segments are sent, ticks: what is sent is not moved any more.
@@ -42,15 +45,16 @@ impl<S: AsRef<[Segment]>> Feeder<S> {
         Self { segments, dark, next: 0, waiting: None, finished: false }
     }
 
-    /// Sends as many segments as the rig takes now, then the end of the job.
+    /// Sends as many segments as the rig takes now, some a tick at most, then the end of the job.
     pub fn feed(&mut self, rig: &mut impl Rig) {
         self.feed_trimmed(rig, 0, &mut Untrimmed);
     }
 
     /// Does the same with what is soon due at a tick of the plan, trimmed.
     pub fn feed_trimmed(&mut self, rig: &mut impl Rig, plan_tick: u32, trim: &mut impl Trim) {
+        let mut left = MOST_A_TICK;
         while let Some(segment) = self.segments.as_ref().get(self.next) {
-            if segment.start_tick > plan_tick.saturating_add(trim.ahead_ticks()) {
+            if left == 0 || segment.start_tick > plan_tick.saturating_add(trim.ahead_ticks()) {
                 return;
             }
             let sent = *self.waiting.get_or_insert_with(|| trim.trimmed(segment));
@@ -60,6 +64,7 @@ impl<S: AsRef<[Segment]>> Feeder<S> {
             }
             self.waiting = None;
             self.next += 1;
+            left -= 1;
         }
         if !self.finished {
             self.finished = rig.send(Command::Finish).is_ok();

@@ -70,6 +70,7 @@ impl RigConfig {
             enable_off_ticks: ticks(self.model.enable.off_s),
             host_silence_ticks: ticks(self.control.host_silence_s),
             host_lost_ticks: ticks(self.control.host_lost_s),
+            lead_ticks: 0,
             standing_ticks: self.light.standing_ticks(),
             standing_radius_rad: self.standing_radius_rad() as f32,
             tolerance_limit_rad: TOLERANCE_LIMIT_RAD as f32,

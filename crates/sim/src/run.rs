@@ -1,11 +1,14 @@
+mod behind_wire;
+
+use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_control::{Controller, Estimate, State};
 use tracelight_plant::Plant;
 use tracelight_rig::{
-    Actuation, Command, Fault, FaultRecord, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, TICK_F64_S,
-    Telemetry,
+    Actuation, Command, Fault, FaultRecord, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, Setpoint,
+    TICK_F64_S, Telemetry,
 };
 use tracelight_session::{Feeder, Job, Session, StrokeTicks, Trim, Untrimmed};
 use tracelight_stroke::Point;
@@ -14,6 +17,7 @@ use tracelight_trajectory::Plan;
 use crate::RigConfig;
 use crate::open_loop::OpenLoop;
 use crate::trouble::{Line, Trouble};
+use crate::wired::Wired;
 
 /// Ticks a run goes on after a fault, so that the log shows what followed: 0.2 s.
 pub const AFTERMATH_TICKS: u32 = 200;
@@ -67,10 +71,19 @@ impl Run {
         self.latched().map(|record| record.fault)
     }
 
-    /// The same with what showed it.
+    /// What is known of that fault.
     pub fn latched(&self) -> Option<FaultRecord> {
         self.ticks.last().and_then(|tick| tick.telemetry.latched)
     }
+}
+
+/// What drives the head.
+#[derive(Clone, Debug)]
+enum Brain {
+    /// The controller itself.
+    Here(Box<(Controller, State)>),
+    /// A board, by a wire; the truth of the ticks that its host does not know of yet.
+    Wired(Box<Wired>, VecDeque<Tick>),
 }
 
 /// A controller with a simulated head, in this process.
@@ -78,8 +91,7 @@ impl Run {
 /// [`Rig`] on the host's side; the truth is on [`Simulated::step`].
 #[derive(Clone, Debug)]
 pub struct SimulatedRig {
-    controller: Controller,
-    state: State,
+    brain: Brain,
     plant: Plant,
     /// What turns the joints in place of the plant's motors, of a rig without encoders.
     open_loop: Option<OpenLoop>,
@@ -94,6 +106,7 @@ pub struct SimulatedRig {
     /// Share by which the beam turns further than the counts say, and how much more each tick.
     stretch: f64,
     stretch_per_tick: f64,
+    has_gyroscope: bool,
     /// Ticks beyond a plan after which a run is given up.
     patience_ticks: usize,
 }
@@ -139,8 +152,7 @@ impl SimulatedRig {
             ..Sensed::default()
         };
         Self {
-            state: controller.start_homed(&sensed),
-            controller,
+            brain: Brain::Here(Box::new((controller, controller.start_homed(&sensed)))),
             open_loop: OpenLoop::at_rest(config, plant.angle_rad()),
             plant,
             sensed,
@@ -152,6 +164,7 @@ impl SimulatedRig {
             true_pose: pose,
             stretch: 0.0,
             stretch_per_tick: 0.0,
+            has_gyroscope: config.truth.gyroscope.fitted,
             patience_ticks: PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize,
         }
     }
@@ -166,7 +179,13 @@ impl SimulatedRig {
             self.lines[j].off = found[j].count.wrapping_neg();
             self.sensed.encoders[j].count = 0;
         }
-        self.state = self.controller.start(&self.sensed);
+        match &mut self.brain {
+            Brain::Here(brain) => brain.1 = brain.0.start(&self.sensed),
+            Brain::Wired(wired, unseen) => {
+                unseen.clear();
+                wired.lose_power();
+            }
+        }
     }
 
     /// What has to be added to what its encoders read for counts that mean true angles.
@@ -176,8 +195,10 @@ impl SimulatedRig {
 
     /// Starts the tick count at another number than 0, as after a long uptime.
     #[must_use]
-    pub const fn counting_from(mut self, tick: u32) -> Self {
-        self.state = self.state.counting_from(tick);
+    pub fn counting_from(mut self, tick: u32) -> Self {
+        if let Brain::Here(brain) = &mut self.brain {
+            brain.1 = brain.1.counting_from(tick);
+        }
         self
     }
 
@@ -196,28 +217,45 @@ impl SimulatedRig {
     }
 
     fn tick(&mut self) -> Tick {
+        let Brain::Here(brain) = &mut self.brain else { return self.tick_wired() };
         self.stretch += self.stretch_per_tick;
-        let telemetry = self.controller.tick(&mut self.state, &self.sensed);
+        let (controller, state) = &mut **brain;
+        let telemetry = controller.tick(state, &self.sensed);
+        let open_loop = (*state.told(), *state.home());
         self.told = telemetry;
-        let asked = telemetry.setpoint.map(|s| f64::from(s.position_rad));
-        let tick = Tick {
-            telemetry,
-            angle_rad: self.plant.angle_rad(),
-            rate_rad_s: self.plant.rate_rad_s(),
-            spot: self.truth.spot(&self.stands(), self.plant.beam_rad().map(|q| q * (1.0 + self.stretch))),
-            asked: self.model.spot(&self.pose, asked),
-            light: self.plant.light(),
-        };
-        let seen = self.exchange(&telemetry.actuation);
-        let encoders = PanTilt::from_fn(|j| self.lines[j].carry(seen.encoders[j]));
-        self.sensed = Sensed { encoders, ..seen };
+        let tick = Tick { asked: self.asked(&telemetry), telemetry, ..self.truth() };
+        self.exchange(&telemetry.actuation, &open_loop);
         tick
     }
 
-    fn exchange(&mut self, actuation: &Actuation) -> Sensed {
-        let Some(open_loop) = &mut self.open_loop else { return self.plant.exchange(actuation) };
-        let to_rad = open_loop.turn(self.state.told(), self.state.home(), self.plant.pushed_nm());
-        Sensed { encoders: open_loop.measured(), ..self.plant.turned_to(actuation, to_rad) }
+    /// What is true of the head now; nothing is known of what it is told.
+    fn truth(&self) -> Tick {
+        Tick {
+            telemetry: Telemetry::default(),
+            angle_rad: self.plant.angle_rad(),
+            rate_rad_s: self.plant.rate_rad_s(),
+            spot: self.truth.spot(&self.stands(), self.plant.beam_rad().map(|q| q * (1.0 + self.stretch))),
+            asked: None,
+            light: self.plant.light(),
+        }
+    }
+
+    /// Where the spot should be.
+    fn asked(&self, telemetry: &Telemetry) -> Option<Point> {
+        self.model.spot(&self.pose, telemetry.setpoint.map(|s| f64::from(s.position_rad)))
+    }
+
+    /// Lets the head do a tick; a head without encoders is told where its joints are to be, and where it was homed.
+    fn exchange(&mut self, actuation: &Actuation, (told, home): &(PanTilt<Setpoint>, PanTilt<i32>)) {
+        let seen = match &mut self.open_loop {
+            None => self.plant.exchange(actuation),
+            Some(open_loop) => {
+                let to_rad = open_loop.turn(told, home, self.plant.pushed_nm());
+                Sensed { encoders: open_loop.measured(), ..self.plant.turned_to(actuation, to_rad) }
+            }
+        };
+        let encoders = PanTilt::from_fn(|j| self.lines[j].carry(seen.encoders[j]));
+        self.sensed = Sensed { encoders, ..seen };
     }
 
     /// Full steps by which each joint is behind its pulses for good, where a stepper fell out of step: the simulated truth, which no real head
@@ -227,8 +265,13 @@ impl SimulatedRig {
     }
 
     /// What the controller believes of the joints.
-    pub const fn estimates(&self) -> &PanTilt<Estimate> {
-        self.state.estimates()
+    pub fn estimates(&self) -> PanTilt<Estimate> {
+        match &self.brain {
+            Brain::Here(brain) => *brain.1.estimates(),
+            Brain::Wired(wired, _) => {
+                wired.board().machine().state().map(|state| *state.estimates()).unwrap_or_default()
+            }
+        }
     }
 
     /// Something goes wrong from now on.
@@ -253,6 +296,8 @@ impl SimulatedRig {
             Trouble::EnableStuck => self.plant.stick_enable(),
             Trouble::PowerLoss => self.power_up(),
             Trouble::Input(input, state) => self.plant.set_input(input, state),
+            Trouble::HostStall(ms) => self.wired(|wired| wired.stall(ms)),
+            Trouble::Unplug(ms) => self.wired(|wired| wired.unplug(ms)),
             Trouble::TickLate(ticks) => self.plant.hold_up(ticks * TICK_F64_S),
             Trouble::Drift(share_per_s) => self.stretch_per_tick = share_per_s * TICK_F64_S,
         }
@@ -301,7 +346,10 @@ impl Simulated for SimulatedRig {
 
 impl Rig for SimulatedRig {
     fn send(&mut self, command: Command) -> Result<(), Command> {
-        self.controller.accept(&mut self.state, command)
+        match &mut self.brain {
+            Brain::Here(brain) => brain.0.accept(&mut brain.1, command),
+            Brain::Wired(wired, _) => wired.send(command),
+        }
     }
 
     fn next(&mut self) -> Option<Telemetry> {

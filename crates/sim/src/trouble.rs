@@ -38,6 +38,10 @@ pub enum Trouble {
     Drift(f64),
     /// A safety input opens, or is fine again.
     Input(Input, InputState),
+    /// The host of a board behind a wire hangs for so many ms.
+    HostStall(u32),
+    /// Somebody pulls the cable to the board, and puts it in again after so many ms.
+    Unplug(u32),
     /// The controller's processor is held up: the next tick takes so many ticks longer.
     TickLate(f64),
 }

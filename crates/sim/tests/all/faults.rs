@@ -10,7 +10,7 @@
 use std::ops::ControlFlow;
 
 use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, Rig, Segment};
-use tracelight_sim::{RigConfig, Simulated, SimulatedRig, Tick, Trouble, arm, run};
+use tracelight_sim::{LinkSettings, RigConfig, Simulated, SimulatedRig, Tick, Trouble, arm, run};
 use tracelight_trajectory::Plan;
 
 use crate::shapes::{self, POSE, alive, circle, lit_ticks, off_mm, plan_of};
@@ -70,8 +70,11 @@ fn moment(plan: &Plan, seed: u64) -> (u32, Joint) {
 
 /// A run with mischief, and what follows a fault.
 fn run_with(config: &RigConfig, plan: &Plan, mischief: Mischief, seed: u64) -> Vec<Tick> {
+    run_on(SimulatedRig::new(config, POSE, seed), plan, mischief, seed)
+}
+
+fn run_on(mut rig: SimulatedRig, plan: &Plan, mischief: Mischief, seed: u64) -> Vec<Tick> {
     let (when, joint) = moment(plan, seed);
-    let mut rig = SimulatedRig::new(config, POSE, seed);
     let watch = |rig: &mut SimulatedRig, tick: &Tick| {
         if tick.telemetry.tick >= when {
             mischief(rig, joint, tick.telemetry.tick - when);
@@ -90,14 +93,24 @@ fn fault_of(ticks: &[Tick], what: &str) -> (usize, Fault) {
     (at, fault)
 }
 
-/// Runs a case at every moment: seen in time, dark in that tick and after it, no light further off than the limit.
+/// Runs a case at every moment, by a controller in this process and by a board behind a wire: seen in time, dark in that tick and after it, no light further off
+/// than the limit.
 fn check(case: &Case, config: &RigConfig) {
+    check_on(case, config, |rig, _| rig);
+    check_on(case, config, |rig, seed| rig.behind_wire(LinkSettings::default(), seed));
+}
+
+fn check_on(case: &Case, config: &RigConfig, on: fn(SimulatedRig, u64) -> SimulatedRig) {
     let name = case.name;
     let plan = plan_of(config, circle(0.2));
     let (mut slowest, mut furthest) = (0, 0.0f64);
     for seed in 0..MOMENTS {
         let (when, joint) = moment(&plan, seed);
-        let ticks = run_with(config, &plan, case.mischief, seed);
+        let rig = on(SimulatedRig::new(config, POSE, seed), seed);
+        // a board has had a tick by then
+        let first = rig.told().tick as usize + usize::from(rig.host().is_some());
+        let ticks = run_on(rig, &plan, case.mischief, seed);
+        let when = when - first as u32;
         let (at, fault) = fault_of(&ticks, &format!("{name}, seed {seed}"));
         assert!(case.faults.contains(&fault), "{name}, seed {seed}: {fault:?}");
         assert!(at > when as usize, "{name}, seed {seed}: before anything happened");

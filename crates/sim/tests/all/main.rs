@@ -28,3 +28,4 @@ mod switches;
 mod tracking;
 mod troubled;
 mod turned;
+mod wired;

@@ -1,0 +1,85 @@
+//! A simulated head behind a wire: time passes until its host knows of another tick.
+
+use std::collections::VecDeque;
+
+use tracelight_device::Host;
+use tracelight_rig::{Actuation, Capabilities};
+
+use super::{Brain, Simulated, SimulatedRig, Tick};
+use crate::link::LinkSettings;
+use crate::wired::Wired;
+
+impl SimulatedRig {
+    /// Puts a wire with a board at its other end between the host and the head; the head's first tick passes, in which nothing is asked of it. Whether it is homed stays as it is.
+    #[must_use]
+    pub fn behind_wire(mut self, link: LinkSettings, seed: u64) -> Self {
+        let Brain::Here(brain) = &self.brain else { return self };
+        let capabilities = Capabilities {
+            stamps: self.open_loop.is_none(),
+            gate_watched: self.sensed.laser_on.is_some(),
+            light_watched: self.sensed.light.is_some(),
+            gyroscope: self.has_gyroscope,
+            times_ticks: true,
+            absolute: brain.1.is_homed(),
+            inputs: self.sensed.inputs.opened_by(0),
+        };
+        let wired = Wired::new(*brain.0.config(), capabilities, link, seed);
+        self.brain = Brain::Wired(Box::new(wired), VecDeque::new());
+        self.step();
+        self
+    }
+
+    /// The host of a head behind a wire.
+    pub fn host(&self) -> Option<&Host> {
+        match &self.brain {
+            Brain::Here(_) => None,
+            Brain::Wired(wired, _) => Some(wired.host()),
+        }
+    }
+
+    /// Lets time pass until the host knows of another tick.
+    pub(super) fn tick_wired(&mut self) -> Tick {
+        loop {
+            let Brain::Wired(wired, unseen) = &mut self.brain else { return self.truth() };
+            if !wired.is_stalled()
+                && let Some(telemetry) = wired.next()
+            {
+                let truth = unseen.pop_front();
+                self.told = telemetry;
+                let truth = truth.unwrap_or_else(|| self.truth());
+                return Tick { asked: self.asked(&telemetry), telemetry, ..truth };
+            }
+            let failed = wired.failed(&self.told);
+            self.pass_wired();
+            if let Some(telemetry) = failed {
+                self.told = telemetry;
+                return Tick { asked: self.asked(&telemetry), telemetry, ..self.truth() };
+            }
+        }
+    }
+
+    /// A millisecond of a head behind a wire.
+    fn pass_wired(&mut self) {
+        self.stretch += self.stretch_per_tick;
+        let truth = self.truth();
+        let sensed = self.sensed;
+        let Brain::Wired(wired, unseen) = &mut self.brain else { return };
+        let mut done = (Actuation::default(), Default::default());
+        wired.tick(&sensed, |board, actuation| {
+            done = (
+                *actuation,
+                board.machine().state().map(|state| (*state.told(), *state.home())).unwrap_or_default(),
+            );
+        });
+        unseen.push_back(truth);
+        let (actuation, open_loop) = done;
+        self.exchange(&actuation, &open_loop);
+    }
+
+    /// Does something with a board behind a wire, if there is one.
+    pub(super) fn wired(&mut self, what: impl FnOnce(&mut Wired)) {
+        if let Brain::Wired(wired, _) = &mut self.brain {
+            what(wired);
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! A board behind a wire: the same controller, whatever the wire does to what is said.
+
+#![allow(clippy::print_stdout, reason = "a test shows figures")]
+
+use std::ops::ControlFlow;
+
+use tracelight_device::{Host, Stage};
+use tracelight_rig::{Command, Fault, Phase, Rig};
+use tracelight_session::Feeder;
+use tracelight_sim::{LinkSettings, RigConfig, Run, Simulated, SimulatedRig, Trouble, arm, run};
+use tracelight_trajectory::Plan;
+
+use crate::dice::Dice;
+use crate::shapes::ink::{Ink, ink};
+use crate::shapes::{POSE, circle, house, off_mm, plan_of, plan_of_all, star};
+
+const GOOD: LinkSettings = LinkSettings { loss: 0.0, corrupt: 0.0, delay_ms: 0.0, jitter_ms: 0.0 };
+
+fn wired(config: &RigConfig, link: LinkSettings, seed: u64) -> SimulatedRig {
+    SimulatedRig::new(config, POSE, seed).behind_wire(link, seed)
+}
+
+/// A controller in this process that has had a tick before anything is asked of it, as one behind a wire has.
+fn here(config: &RigConfig, seed: u64) -> SimulatedRig {
+    let mut rig = SimulatedRig::new(config, POSE, seed);
+    rig.step();
+    rig
+}
+
+fn to_the_end(rig: &mut SimulatedRig, plan: &Plan) -> Run {
+    run(rig, plan, false, |_, _| ControlFlow::Continue(()))
+}
+
+#[test]
+fn what_is_drawn_through_a_wire_is_what_is_drawn_without_it_in_every_bit() {
+    for name in ["report", "worn", "stepper", "servo"] {
+        let config = RigConfig::preset(name).unwrap();
+        for (seed, plan) in [plan_of_all(&config, house()), plan_of(&config, star(0.2))].iter().enumerate() {
+            let seed = seed as u64;
+            let here = to_the_end(&mut here(&config, seed), plan);
+            let mut behind = wired(&config, GOOD, seed);
+            let there = to_the_end(&mut behind, plan);
+            assert_eq!(behind.host().unwrap().stage(), Stage::Running, "{name}");
+            assert!(there.is_done(), "{name}: {:?}", there.fault());
+            let first = here.ticks.iter().zip(&there.ticks).position(|(a, b)| a != b);
+            assert_eq!(first.map(|at| (at, &here.ticks[at], &there.ticks[at])), None, "{name}, {seed}");
+            assert_eq!(here.ticks.len(), there.ticks.len(), "{name}");
+        }
+    }
+}
+
+/// A run that goes on whatever becomes of the wire: whoever stands there arms again when it is dark and was not told to be. What happens at its ticks is told.
+fn drawn(rig: &mut SimulatedRig, plan: &Plan, mut at: impl FnMut(&mut SimulatedRig, u32)) -> Run {
+    /// How long it takes somebody to arm again, ticks.
+    const SOON: u32 = 300;
+    let mut feeder = Feeder::new(plan.segments.as_slice(), false);
+    let mut ran = Run::default();
+    let (mut dark, most) = (SOON, 20 * plan.points.len());
+    while !ran.is_done() && ran.ticks.len() < most {
+        rig.send(Command::KeepAlive).unwrap();
+        // what was sent before may be refused while it greets
+        if dark >= SOON && arm(rig) {
+            dark = 0;
+        }
+        feeder.feed(rig);
+        let tick = rig.step();
+        dark = if tick.telemetry.phase == Phase::Dark { dark + 1 } else { 0 };
+        ran.ticks.push(tick);
+        if matches!(rig.host().map(Host::stage), Some(Stage::Failed(_))) {
+            break;
+        }
+        at(rig, ran.ticks.len() as u32);
+    }
+    ran
+}
+
+fn check_ink(name: &str, ran: &Run, plan: &Plan, before: &Ink) -> Ink {
+    assert!(ran.is_done() && ran.fault().is_none(), "{name}: {:?}", ran.fault());
+    let ink = ink(plan, ran);
+    assert!(ink.missing_mm <= before.missing_mm + 0.2, "{name}: {ink:?} {before:?}");
+    assert!(ink.doubled_mm <= 0.5, "{name}: {ink:?}");
+    let off = ran.ticks.iter().filter(|t| t.light).map(off_mm).fold(0.0, f64::max);
+    assert!(off < 1.0, "{name}: {off} mm");
+    ink
+}
+
+#[test]
+fn through_a_bad_wire_all_is_drawn_and_nothing_else() {
+    let config = RigConfig::report();
+    for (name, plan) in [("house", plan_of_all(&config, house())), ("star", plan_of(&config, star(0.2)))] {
+        let before = ink(&plan, &to_the_end(&mut here(&config, 1), &plan));
+        let mut worst = Ink::default();
+        for (seed, link) in [
+            LinkSettings { loss: 0.01, corrupt: 1e-3, ..GOOD },
+            LinkSettings { loss: 0.1, corrupt: 0.02, ..GOOD },
+            LinkSettings { delay_ms: 2.0, jitter_ms: 6.0, ..GOOD },
+            LinkSettings { loss: 0.03, corrupt: 0.01, delay_ms: 5.0, jitter_ms: 15.0 },
+        ]
+        .into_iter()
+        .cycle()
+        .take(12)
+        .enumerate()
+        {
+            let mut rig = wired(&config, link, seed as u64);
+            let ran = drawn(&mut rig, &plan, |_, _| {});
+            let host = rig.host().unwrap();
+            assert_eq!(host.stage(), Stage::Running, "{name}, {link:?}: {} ticks", ran.ticks.len());
+            let ink = check_ink(&format!("{name}, {link:?}"), &ran, &plan, &before);
+            worst.missing_mm = worst.missing_mm.max(ink.missing_mm);
+            worst.doubled_mm = worst.doubled_mm.max(ink.doubled_mm);
+            worst.off_mm = worst.off_mm.max(ink.off_mm);
+            let held = ran.ticks.iter().filter(|t| t.telemetry.phase == Phase::Holding).count();
+            println!(
+                "{name}, {link:?}: {} ticks, held {held}, {} packets spoilt, {ink:?}",
+                ran.ticks.len(),
+                host.spoilt()
+            );
+        }
+        println!("{name}: worst {worst:?}, undisturbed {before:?}");
+    }
+}
+
+#[test]
+fn a_host_that_hangs_is_waited_for_or_lost() {
+    let config = RigConfig::report();
+    let plan = plan_of(&config, circle(0.2));
+    let before = ink(&plan, &to_the_end(&mut here(&config, 1), &plan));
+    let mut dice = Dice::of_seed(8);
+    for ms in [40, 80, 500, 2000] {
+        for seed in 0..15 {
+            let when = 100 + dice.below(plan.points.len() - 300) as u32;
+            let mut rig = wired(&config, GOOD, seed);
+            let ran = drawn(&mut rig, &plan, |rig, tick| {
+                if tick == when {
+                    rig.suffer(Trouble::HostStall(ms));
+                }
+            });
+            let what = format!("{ms} ms from {when} on");
+            let held = ran.ticks.iter().filter(|t| t.telemetry.phase == Phase::Holding).count();
+            let fault = ran.ticks.iter().find_map(|t| t.telemetry.fault());
+            if ms == 2000 {
+                assert_eq!(fault, Some(Fault::HostLost), "{what}");
+                let last = ran.ticks.iter().rposition(|t| t.telemetry.actuation.gate);
+                assert!(last.is_none_or(|last| last < when as usize + 60), "{what}: lit until {last:?}");
+                continue;
+            }
+            assert_eq!(held > 20, ms > 60, "{what}: held for {held} ticks");
+            check_ink(&what, &ran, &plan, &before);
+        }
+    }
+}
+
+#[test]
+fn a_cable_that_is_pulled_is_put_in_again_and_the_rest_is_drawn() {
+    let config = RigConfig::report();
+    let plan = plan_of_all(&config, house());
+    let before = ink(&plan, &to_the_end(&mut here(&config, 1), &plan));
+    for seed in 0..6 {
+        let mut dice = Dice::of_seed(seed.into());
+        let mut rig = wired(&config, LinkSettings { delay_ms: 1.0, jitter_ms: 2.0, ..GOOD }, seed);
+        let mut next = 500;
+        let mut pulled = 0;
+        let ran = drawn(&mut rig, &plan, |rig, tick| {
+            if tick >= next && pulled < 10 {
+                pulled += 1;
+                next = tick + 1200 + dice.below(900) as u32;
+                rig.suffer(Trouble::Unplug(30 + dice.below(900) as u32));
+            }
+        });
+        assert_eq!((rig.host().unwrap().stage(), pulled), (Stage::Running, 10), "{seed}");
+        let ink = check_ink(&format!("seed {seed}"), &ran, &plan, &before);
+        println!("seed {seed}: {} ticks, {ink:?}", ran.ticks.len());
+    }
+}
