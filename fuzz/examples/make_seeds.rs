@@ -25,6 +25,44 @@ fn main() {
     images(&root.join("seeds/trace"));
     rows(&root.join("seeds/fit"));
     tours(&root.join("seeds/order"));
+    packets(&root.join("seeds/wire"));
+}
+
+/// A host and a board that shake hands and draw a little, as each of them hears the other, and packets of each kind by themselves.
+fn packets(folder: &FilePath) {
+    use tracelight_rig::wire::{Ask, Order, Row, Rows, ToBoard};
+    use tracelight_rig::{Command, PanTilt};
+    let piece = |kind: u8, bytes: &[u8]| {
+        bytes.chunks(255).flat_map(|bytes| [&[kind, bytes.len() as u8], bytes].concat()).collect::<Vec<u8>>()
+    };
+    let orders = [
+        Ask::Arm { nonce: 1, acknowledges: 0 },
+        Ask::Command(Command::Home(PanTilt::new(1, -1))),
+        Ask::Command(Command::Point(50)),
+        Ask::Command(Command::Speed(0.5)),
+        Ask::Command(Command::Pause),
+        Ask::Command(Command::Abandon),
+        Ask::Command(Command::Unhome),
+        Ask::Command(Command::Finish),
+    ];
+    let mut host = tracelight_device::Host::new(tracelight_sim::RigConfig::report().control_config(), 1);
+    let mut greeting = Vec::new();
+    host.give(0, &mut greeting);
+    let hello = piece(tracelight_fuzz::wire::TO_BOARD, &greeting);
+    let orders = (0..).zip(orders).map(|(sequence, ask)| ToBoard::Order(Order { sequence, ask }));
+    let said = [ToBoard::KeepAlive { host_us: 5 }, ToBoard::Commit { length: 4, crc: 1 }]
+        .into_iter()
+        .chain(orders)
+        .chain([
+            ToBoard::Disarm { before: 9 },
+            ToBoard::Again { from: 0, count: 9 },
+            ToBoard::Seen { number: 1 },
+        ]);
+    let kinds = said.flat_map(|said| piece(tracelight_fuzz::wire::BODY_TO_BOARD, said.body().bytes()));
+    write(folder, "kinds", hello.iter().copied().chain(kinds).collect::<Vec<u8>>());
+    let (rows, _) = Rows::body((3, 1, 8), &[Row::default().told(), Row::default().told()]);
+    write(folder, "rows", piece(tracelight_fuzz::wire::BODY_TO_HOST, rows.bytes()));
+    write(folder, "session", tracelight_fuzz::wire::session());
 }
 
 fn write(folder: &FilePath, name: &str, bytes: impl AsRef<[u8]>) {

@@ -10,12 +10,14 @@
 //! | [`trace`] | an image and options | traced: finite, inside the image, the same every time |
 //! | [`fit`] | points and options | a path near them, from the first to the last |
 //! | [`order`] | strokes and options | the same strokes in another order |
+//! | [`wire`] | what a host and a board hear | both go on, and nothing is lit that was not asked for |
 
 pub mod fit;
 pub mod formats;
 pub mod order;
 pub mod picture;
 pub mod trace;
+pub mod wire;
 
 mod bytes;
 mod sound;

@@ -48,6 +48,35 @@ fn strokes_are_ordered_and_none_is_lost() {
 }
 
 #[test]
+fn hosts_and_boards_go_on_whatever_they_hear() {
+    assert!(replay("wire", tracelight_fuzz::wire::check) >= 3);
+}
+
+/// The same with what a fuzzer would begin with: bits of the seeds turned, pieces left out and put together anew.
+#[test]
+fn hosts_and_boards_go_on_whatever_becomes_of_the_seeds() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("seeds/wire");
+    let seeds: Vec<Vec<u8>> =
+        fs::read_dir(folder).unwrap().map(|entry| fs::read(entry.unwrap().path()).unwrap()).collect();
+    let mut state = 1_u64;
+    let mut roll = |below: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 8) as usize % below
+    };
+    for _ in 0..300 {
+        let (first, second) = (&seeds[roll(seeds.len())], &seeds[roll(seeds.len())]);
+        let mut bytes = [&first[..roll(first.len() + 1)], &second[roll(second.len())..]].concat();
+        for _ in 0..roll(20).min(bytes.len()) {
+            let at = roll(bytes.len());
+            bytes[at] ^= 1 << roll(8);
+        }
+        tracelight_fuzz::wire::check(&bytes);
+    }
+}
+
+#[test]
 #[should_panic(expected = "loses a line")]
 fn a_drawing_that_came_back_changed_would_be_seen() {
     // one stroke of our own SVG in another place than its twin in the drawing

@@ -23,6 +23,11 @@ impl<const SEGMENTS: usize, const ROWS: usize> Board<SEGMENTS, ROWS> {
         &self.machine
     }
 
+    /// Turns a bit of the configuration in force, as [`Machine::spoil`].
+    pub fn spoil(&mut self, word: usize, bit: u32) -> bool {
+        self.machine.spoil(word, bit)
+    }
+
     /// What speaks with the host.
     pub const fn server(&self) -> &Server<SEGMENTS, ROWS> {
         &self.server

@@ -4,6 +4,8 @@ use tracelight_control::{Config, Controller, State};
 use tracelight_rig::wire::{Ask, Order, Row, RowBytes, as_told, is_before};
 use tracelight_rig::{Actuation, Command, FaultRecord, PanTilt, Phase, Sensed, Telemetry};
 
+use crate::configuration::{MOST_CONFIGURATION, read_configuration, write_configuration};
+
 /// Orders that are taken before a tick at most: each takes some of its time.
 pub const MOST_ORDERS_A_TICK: u8 = 8;
 
@@ -86,6 +88,22 @@ impl<const SEGMENTS: usize> Machine<SEGMENTS> {
     /// What the controller remembers; `None` without a configuration.
     pub fn state(&self) -> Option<&State<SEGMENTS>> {
         self.running.as_ref().map(|(_, state)| state)
+    }
+
+    /// Turns a bit of the configuration in force into the other, as a memory fault does: word, counted from 0, and bit. False if there is none, or if that
+    /// makes a value that no configuration may have.
+    pub fn spoil(&mut self, word: usize, bit: u32) -> bool {
+        let Some((controller, _)) = &mut self.running else { return false };
+        let mut bytes = [0; MOST_CONFIGURATION];
+        let spoilt = write_configuration(controller.config(), &mut bytes).and_then(|length| {
+            let at = 4 * word + bit as usize / 8;
+            *bytes.get_mut(at).filter(|_| at < length)? ^= 1 << (bit % 8);
+            read_configuration(bytes.get(..length)?).ok()
+        });
+        if let Some(config) = spoilt {
+            *controller = Controller::new(config);
+        }
+        spoilt.is_some()
     }
 
     /// One tick: takes what came, `next` order by order, and lets the controller run. `next` is told what it may give: a segment only if there is room for one, and

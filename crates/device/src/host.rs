@@ -5,7 +5,7 @@ use tracelight_control::Config;
 use tracelight_rig::wire::{
     Ask, Configured, FromBoard, Greeting, MOST_PACKET, Packets, Rows, ToBoard, VERSION, crc32, packed,
 };
-use tracelight_rig::{Command, Telemetry};
+use tracelight_rig::{Command, Phase, Telemetry};
 
 use crate::clock::Clock;
 use crate::outbox::Outbox;
@@ -66,6 +66,8 @@ pub struct Host {
     /// Tick of the greeting after which orders are numbered anew.
     begins_again: Option<u32>,
     telemetry: VecDeque<Telemetry>,
+    /// The board was disarmed in the last tick that was followed, and no dot was wanted.
+    is_off: bool,
     /// Number before which orders that let light out are void, until the board says that it is disarmed.
     disarm: Option<u16>,
     is_alive: bool,
@@ -119,6 +121,7 @@ impl Host {
             next_tick: 0,
             begins_again: None,
             telemetry: VecDeque::new(),
+            is_off: false,
             disarm: None,
             is_alive: false,
             seen: None,
@@ -187,6 +190,8 @@ impl Host {
                 self.is_alive = true;
                 return Ok(());
             }
+            // nothing that would let light out is on its way, and none can be
+            Command::Disarm if self.is_off && !self.outbox.lights() => return Ok(()),
             Command::Disarm => {
                 self.disarm = Some(self.outbox.next());
                 self.times.disarmed = None;
@@ -413,7 +418,9 @@ impl Host {
             if row.disarmed {
                 self.disarm = None;
             }
-            self.telemetry.push_back(twin.follow(self.next_tick, &row, &orders)?);
+            let told = twin.follow(self.next_tick, &row, &orders)?;
+            self.is_off = told.phase == Phase::Dark && !told.actuation.gate && !told.actuation.enable;
+            self.telemetry.push_back(told);
             self.times.missing = None;
             self.next_tick = self.next_tick.wrapping_add(1);
         }

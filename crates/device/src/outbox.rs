@@ -44,6 +44,11 @@ impl Outbox {
         self.in_flight() < WINDOW && coming.count() < usize::from(self.free)
     }
 
+    /// Whether any of them lets light out.
+    pub(crate) fn lights(&self) -> bool {
+        self.orders.iter().any(|order| order.ask.lights())
+    }
+
     /// Orders that the board has not yet received, as far as is known.
     fn in_flight(&self) -> u16 {
         self.next.wrapping_sub(self.wanted)

@@ -4,7 +4,8 @@ use std::fmt;
 use std::str::FromStr;
 
 use tracelight_rig::{Joint, PanTilt};
-use tracelight_sim::{EyeTrouble, Room, Trouble};
+use tracelight_sim::{EyeTrouble, LinkSettings, RigConfig, Room, Trouble};
+use tracelight_task::Failure;
 
 /// What goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +20,10 @@ enum What {
     Drift(f64),
     /// Something with the camera.
     Eye(EyeTrouble),
+    /// Something with the wire to an emulated board, all the time.
+    Link(LinkSettings),
+    /// Something with it, or with its host, once.
+    Wire(Trouble),
 }
 
 /// Something that goes wrong once.
@@ -35,14 +40,22 @@ const BUMP_SHARES: [f64; 2] = [0.8, 0.6];
 const LONGEST_S: f64 = 1800.0;
 
 const KINDS: &str = "pan-slip=COUNTS, tilt-slip=COUNTS, head-bump=DEGREES, power-loss, drift=PERCENT, camera-bump=PX, camera-unplugged, camera-frozen, \
-                     camera-black, camera-slow=IMAGES_A_SECOND, camera-stamps=SECONDS";
+                     camera-black, camera-slow=IMAGES_A_SECOND, camera-stamps=SECONDS, unplug=SECONDS, host-stall=SECONDS; or, all the time and without @SECONDS, \
+                     link-loss=PERCENT, link-corrupt=PERCENT, link-delay=MS, link-jitter=MS";
 
 impl FromStr for TroubleAt {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = |why: String| format!("{why}; a trouble is NAME=VALUE@SECONDS, with {KINDS}");
-        let (what, after) = text.split_once('@').ok_or_else(|| wrong("no @ and no time".to_owned()))?;
+        let is_link = text.starts_with("link-");
+        let (what, after) = match text.split_once('@') {
+            None if is_link => (text, "0"),
+            Some(_) if is_link => {
+                return Err(wrong("what is wrong with a link is so all the time: no @".to_owned()));
+            }
+            parts => parts.ok_or_else(|| wrong("no @ and no time".to_owned()))?,
+        };
         let number = |text: &str, most: f64| -> Result<f64, String> {
             let value: f64 = text.parse().map_err(|_| wrong(format!("{text:?} is no number")))?;
             if value.abs() <= most { Ok(value) } else { Err(wrong(format!("{value} is more than {most}"))) }
@@ -53,6 +66,12 @@ impl FromStr for TroubleAt {
             let value = number(value, most)?;
             if value >= least { Ok(value) } else { Err(wrong(format!("{value} is less than {least}"))) }
         };
+        let share = |text: &str, unit: &str, most: f64| {
+            let value = number(text.strip_suffix(unit).unwrap_or(text), most)?;
+            if value >= 0.0 { Ok(value) } else { Err(wrong(format!("{value} is less than 0"))) }
+        };
+        let percent = |text: &str| share(text, "%", 50.0).map(|percent| 0.01 * percent);
+        let ms = |text: &str| share(text, "ms", 1000.0);
         let counts = |joint: Joint| Ok::<_, String>(What::Slip(joint, number(value, 1000.0)?.round() as i32));
         let what = match name {
             "pan-slip" => counts(Joint::Pan)?,
@@ -66,6 +85,14 @@ impl FromStr for TroubleAt {
             "camera-black" => What::Eye(EyeTrouble::Black),
             "camera-slow" => What::Eye(EyeTrouble::Slow(1.0 / within(0.1, 1000.0)?)),
             "camera-stamps" => What::Eye(EyeTrouble::Stamps(within(0.0, 10.0)?)),
+            "link-loss" => What::Link(LinkSettings { loss: percent(value)?, ..LinkSettings::default() }),
+            "link-corrupt" => {
+                What::Link(LinkSettings { corrupt: percent(value)?, ..LinkSettings::default() })
+            }
+            "link-delay" => What::Link(LinkSettings { delay_ms: ms(value)?, ..LinkSettings::default() }),
+            "link-jitter" => What::Link(LinkSettings { jitter_ms: ms(value)?, ..LinkSettings::default() }),
+            "unplug" => What::Wire(Trouble::Unplug((1e3 * within(1e-3, 60.0)?) as u32)),
+            "host-stall" => What::Wire(Trouble::HostStall((1e3 * within(1e-3, 60.0)?) as u32)),
             other => return Err(wrong(format!("nobody knows {other:?}"))),
         };
         let takes_none = matches!(
@@ -93,6 +120,9 @@ impl fmt::Display for TroubleAt {
             What::Eye(EyeTrouble::Black) => "camera-black",
             What::Eye(EyeTrouble::Slow(_)) => "camera-slow",
             What::Eye(EyeTrouble::Stamps(_)) => "camera-stamps",
+            What::Link(_) => return f.write_str("link"),
+            What::Wire(Trouble::Unplug(_)) => "unplug",
+            What::Wire(_) => "host-stall",
         };
         write!(f, "{name}@{}", self.after_s)
     }
@@ -107,16 +137,63 @@ impl TroubleAt {
         }
         match self.what {
             What::Slip(joint, counts) => room.rig().suffer(Trouble::EncoderJump(joint, counts)),
-            What::HeadBump(rad) => {
-                let [pan, tilt] = BUMP_SHARES.map(|share| share * rad);
-                room.rig().suffer(Trouble::Bump(PanTilt::new(pan, tilt)));
-            }
+            What::HeadBump(rad) => room.rig().suffer(bump(rad)),
             What::PowerLoss => room.rig().suffer(Trouble::PowerLoss),
             What::Drift(share) => room.rig().suffer(Trouble::Drift(share / left_s.max(1.0))),
             What::Eye(trouble) => room.suffer(trouble),
+            // of itself
+            What::Link(_) | What::Wire(_) => {}
         }
         true
     }
+
+    /// What happens to a head that no camera watches, by itself.
+    fn of_rig(&self) -> Option<Trouble> {
+        match self.what {
+            What::Slip(joint, counts) => Some(Trouble::EncoderJump(joint, counts)),
+            What::HeadBump(rad) => Some(bump(rad)),
+            What::PowerLoss => Some(Trouble::PowerLoss),
+            What::Wire(trouble) => Some(trouble),
+            What::Drift(_) | What::Eye(_) | What::Link(_) => None,
+        }
+    }
+}
+
+fn bump(rad: f64) -> Trouble {
+    let [pan, tilt] = BUMP_SHARES.map(|share| share * rad);
+    Trouble::Bump(PanTilt::new(pan, tilt))
+}
+
+/// Has an emulated board and its wire suffer what is theirs, and what a head does that no camera watches.
+///
+/// # Errors
+/// `usage`: there is neither board nor room that could suffer it.
+pub fn emulate(rig: &mut RigConfig, troubles: &[TroubleAt], is_watched: bool) -> Result<(), Failure> {
+    let wrong = |what: &TroubleAt, needs: &str| {
+        Err(Failure::usage(
+            "usage",
+            format!("--sim-trouble {what}: no real head is driven yet, and this is for {needs}"),
+        ))
+    };
+    for trouble in troubles {
+        let of_room = is_watched && !matches!(trouble.what, What::Link(_) | What::Wire(_));
+        match (&mut rig.emulated, trouble.what, trouble.of_rig()) {
+            _ if of_room => {}
+            (None, What::Link(_) | What::Wire(_), _) => {
+                return wrong(trouble, "an emulated board: give --rig emulated");
+            }
+            (Some(emulated), What::Link(link), _) => emulated.link = emulated.link.with(&link),
+            (Some(emulated), _, Some(what)) => emulated.troubles.push((trouble.after_s, what)),
+            (Some(_), ..) => return wrong(trouble, "a simulated room: give --camera sim:PICTURE"),
+            (None, ..) => {
+                return wrong(
+                    trouble,
+                    "a simulated room or an emulated board: give --camera sim:PICTURE or --rig emulated",
+                );
+            }
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -139,6 +216,10 @@ mod tests {
             ("camera-black=1@1", "takes no value"),
             ("quake@1", "nobody knows \"quake\""),
             ("drift=nan@1", "is more than"),
+            ("link-loss=1%@3", "all the time"),
+            ("link-loss=-1", "-1 is less than 0"),
+            ("link-delay=2000ms", "2000 is more than 1000"),
+            ("unplug=0@1", "0 is less than 0.001"),
         ] {
             let said = read(text).unwrap_err();
             assert!(said.contains(why), "{text}: {said}");

@@ -41,7 +41,7 @@ pub(crate) trait Course {
 
 /// How a session ended.
 pub(crate) struct Ended {
-    /// Why, if its rig lost power.
+    /// Why, if its rig lost power, or was disarmed by nobody here.
     pub(crate) failure: Option<Failure>,
     /// The fault that is latched.
     pub(crate) fault: Option<FaultRecord>,
@@ -102,6 +102,8 @@ pub(crate) fn drive(
         }
     }
     let now = wall.snapshot();
+    let is_ours = hands.is_there() || task.stop.is_wanted() || course.is_over();
+    let failure = (now.state == State::Stopped && !is_ours).then(disarmed);
     // whatever ended it, and whether its gate is open or not
     if now.state != State::Done {
         let _ = wall.request(Request::Stop);
@@ -110,7 +112,14 @@ pub(crate) fn drive(
         let last = tick(wall);
         course.keep(keep, last, &wall.snapshot(), now.laps)?;
     }
-    Ok(Ended { failure: None, fault: wall.told().latched, now })
+    Ok(Ended { failure, fault: wall.told().latched, now })
+}
+
+/// A rig that does not go on, though nobody here stopped it.
+fn disarmed() -> Failure {
+    let message = "the rig was disarmed, and not from here: the connection to its board was interrupted. It is dark until somebody arms it; \
+                   `tracelight resume` with the folder of this run draws what is left";
+    Failure::failed("disarmed", message)
 }
 
 fn begin(wall: &mut Session<&mut SimulatedRig>, job: Job) -> Result<(), Refused> {

@@ -11,6 +11,7 @@ mod found;
 mod hand_tuned;
 pub mod head;
 mod keys;
+mod names;
 mod pages;
 mod possible;
 mod rig;
@@ -22,6 +23,7 @@ mod whole;
 
 pub use drives::{measured, set_law};
 pub use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
+pub use names::{emulated, is_port};
 pub use pages::PageName;
 pub use rig::{RigFile, parse, read, write};
 pub use save::saved;

@@ -7,6 +7,7 @@ use crate::control_settings::ControlSettings;
 use crate::drive::DriveSettings;
 use crate::laws::{LawName, ObserverName};
 use crate::light_settings::LightSettings;
+use crate::link::Emulation;
 use crate::safety_settings::SafetySettings;
 
 /// A rig, whole: what we believe it is, what it really is (in simulation), and how it is to be driven.
@@ -32,6 +33,8 @@ pub struct RigConfig {
     pub light: LightSettings,
     /// When it is dark although nothing is wrong with the head.
     pub safety: SafetySettings,
+    /// Whether a board drives it that is emulated behind a wire, in place of a controller in this process; no part of a rig file.
+    pub emulated: Option<Emulation>,
 }
 
 /// A head in numbers.

@@ -50,7 +50,7 @@ pub use diagram::{Diagram, ScopeTick};
 pub use drive::{DriveKind, DriveSettings};
 pub use laws::{Compensator, HandTuned, LawName, ObserverName, StepReference};
 pub use light_settings::{LaserClass, LightSettings};
-pub use link::LinkSettings;
+pub use link::{Emulation, LinkSettings};
 pub use pid_law::PidLaw;
 pub use replay::replay;
 pub use room::{Room, Taken};

@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use crate::trouble::Trouble;
+
 /// How bad a wire is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinkSettings {
@@ -13,6 +15,28 @@ pub struct LinkSettings {
     pub delay_ms: f64,
     /// How much longer it may take, ms; a later packet never comes before an earlier one.
     pub jitter_ms: f64,
+}
+
+impl LinkSettings {
+    /// Both at once: the worse of each.
+    #[must_use]
+    pub fn with(&self, other: &Self) -> Self {
+        Self {
+            loss: self.loss.max(other.loss),
+            corrupt: self.corrupt.max(other.corrupt),
+            delay_ms: self.delay_ms.max(other.delay_ms),
+            jitter_ms: self.jitter_ms.max(other.jitter_ms),
+        }
+    }
+}
+
+/// A board that is emulated behind a wire, and what goes wrong with both.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Emulation {
+    /// The wire.
+    pub link: LinkSettings,
+    /// What happens once, and when: s of the rig's time.
+    pub troubles: Vec<(f64, Trouble)>,
 }
 
 /// One direction of it.

@@ -71,6 +71,7 @@ impl RigConfig {
             },
             light: LightSettings::POINTER,
             safety: SafetySettings::USUAL,
+            emulated: None,
         }
     }
 

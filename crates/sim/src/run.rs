@@ -107,6 +107,8 @@ pub struct SimulatedRig {
     stretch: f64,
     stretch_per_tick: f64,
     has_gyroscope: bool,
+    /// What is to go wrong of itself, and in which tick.
+    coming: Vec<(u32, Trouble)>,
     /// Ticks beyond a plan after which a run is given up.
     patience_ticks: usize,
 }
@@ -126,7 +128,7 @@ impl SimulatedRig {
         for j in Joint::BOTH {
             rig.lines[j].off = counts[j].wrapping_neg();
         }
-        rig
+        rig.emulated(config, seed)
     }
 
     /// Makes a rig that was just powered up: at rest within a count of these angles, rad, with its encoders at zero there. Its joints have end
@@ -138,7 +140,7 @@ impl SimulatedRig {
         let plant = Plant::resting_at(&plant, angle_rad, seed).between_stops(&plant, stops_rad);
         let mut rig = Self::of(config, pose, plant, seed);
         rig.power_up();
-        rig
+        rig.emulated(config, seed)
     }
 
     /// A rig with this plant, homed, its encoders read as they are.
@@ -165,6 +167,7 @@ impl SimulatedRig {
             stretch: 0.0,
             stretch_per_tick: 0.0,
             has_gyroscope: config.truth.gyroscope.fitted,
+            coming: Vec::new(),
             patience_ticks: PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize,
         }
     }
@@ -297,6 +300,7 @@ impl SimulatedRig {
             Trouble::PowerLoss => self.power_up(),
             Trouble::Input(input, state) => self.plant.set_input(input, state),
             Trouble::HostStall(ms) => self.wired(|wired| wired.stall(ms)),
+            Trouble::BitFlip(word, bit) => self.wired(|wired| wired.spoil(word, bit)),
             Trouble::Unplug(ms) => self.wired(|wired| wired.unplug(ms)),
             Trouble::TickLate(ticks) => self.plant.hold_up(ticks * TICK_F64_S),
             Trouble::Drift(share_per_s) => self.stretch_per_tick = share_per_s * TICK_F64_S,

@@ -42,6 +42,8 @@ pub enum Trouble {
     HostStall(u32),
     /// Somebody pulls the cable to the board, and puts it in again after so many ms.
     Unplug(u32),
+    /// A bit of the configuration of a board behind a wire is another one: word and bit.
+    BitFlip(usize, u32),
     /// The controller's processor is held up: the next tick takes so many ticks longer.
     TickLate(f64),
 }

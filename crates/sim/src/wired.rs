@@ -104,6 +104,11 @@ impl Wired {
         self.stalled_until_us = self.now_us + ms as u64 * TICK_US;
     }
 
+    /// A bit of the board's configuration turns.
+    pub(crate) fn spoil(&mut self, word: usize, bit: u32) {
+        self.board.spoil(word, bit);
+    }
+
     /// Somebody pulls the cable, and puts it in again after so long.
     pub(crate) fn unplug(&mut self, ms: u32) {
         self.unplugged_until_us = Some(self.now_us + u64::from(ms) * TICK_US);

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use tracelight_camera::{Opened, shown};
+use tracelight_eye::trouble::emulate;
 use tracelight_files::ResultFolder;
 use tracelight_job::{Prepared, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
 use tracelight_pipeline::told_places;
@@ -122,6 +123,7 @@ fn begun(
 fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig)?;
+    emulate(&mut driving.rig, &args.follow.sim_trouble, args.eye.camera.is_some())?;
     driving.order.sequence = args.sequence.sequence();
     let head = args.head.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
     if args.eye.camera.is_none() {

@@ -8,7 +8,7 @@ use tracelight_picture::{Pixels, Raster, Source, decode, decode_with};
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_rigfile::head::KnownHead;
-use tracelight_sim::RigConfig;
+use tracelight_sim::{Emulation, RigConfig};
 use tracelight_task::Failure;
 
 use crate::cli::lettering::LetteringArgs;
@@ -79,9 +79,12 @@ pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
     if let Some(preset) = RigConfig::preset(name) {
         return Ok(preset);
     }
-    if is_port(name) {
+    if let Some(base) = rigfile::emulated(name) {
+        return Ok(RigConfig { emulated: Some(Emulation::default()), ..rig(base)? });
+    }
+    if rigfile::is_port(name) {
         let message = format!(
-            "{name}: no real head can be driven yet, only simulated ones: a preset that `tracelight rigs` lists, or a rig file"
+            "{name}: no real head can be driven yet, only simulated ones: a preset that `tracelight rigs` lists, a rig file, or `emulated` for a board behind a wire"
         );
         return Err(Failure::usage("rig-file", message));
     }
@@ -103,13 +106,6 @@ fn say(remark: &str) {
     if !std::env::args_os().any(|argument| argument == "--quiet") {
         eprintln!("note: {remark}");
     }
-}
-
-/// Whether a name is that of a serial port, where people have a board.
-fn is_port(name: &str) -> bool {
-    let number = name.strip_prefix("COM").or_else(|| name.strip_prefix("com"));
-    name.starts_with("/dev/")
-        || number.is_some_and(|n| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()))
 }
 
 /// Writes a rig's model, what was identified of it and how it is driven into the rig file it came from, whole or not at all.

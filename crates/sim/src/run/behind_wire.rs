@@ -2,15 +2,25 @@
 
 use std::collections::VecDeque;
 
-use tracelight_device::Host;
-use tracelight_rig::{Actuation, Capabilities};
+use tracelight_device::{Host, Stage};
+use tracelight_rig::{Actuation, Capabilities, TICK_F64_S};
 
-use super::{Brain, Simulated, SimulatedRig, Tick};
-use crate::link::LinkSettings;
+use super::{Brain, SimulatedRig, Tick};
+use crate::RigConfig;
+use crate::link::{Emulation, LinkSettings};
 use crate::wired::Wired;
 
 impl SimulatedRig {
-    /// Puts a wire with a board at its other end between the host and the head; the head's first tick passes, in which nothing is asked of it. Whether it is homed stays as it is.
+    /// Puts a wire and a board there if the rig is to have them.
+    pub(super) fn emulated(mut self, config: &RigConfig, seed: u64) -> Self {
+        let Some(Emulation { link, troubles }) = &config.emulated else { return self };
+        let tick = |s: f64| (s / TICK_F64_S) as u32;
+        self.coming = troubles.iter().map(|&(s, trouble)| (tick(s), trouble)).collect();
+        self.behind_wire(*link, seed)
+    }
+
+    /// Puts a wire with a board at its other end between the host and the head, which passes its first tick, in which nothing can be asked of it; it is the first
+    /// that is told. Whether the head is homed stays as it is.
     #[must_use]
     pub fn behind_wire(mut self, link: LinkSettings, seed: u64) -> Self {
         let Brain::Here(brain) = &self.brain else { return self };
@@ -25,7 +35,9 @@ impl SimulatedRig {
         };
         let wired = Wired::new(*brain.0.config(), capabilities, link, seed);
         self.brain = Brain::Wired(Box::new(wired), VecDeque::new());
-        self.step();
+        while self.host().is_some_and(|host| host.stage() != Stage::Running) {
+            self.pass_wired();
+        }
         self
     }
 
@@ -60,6 +72,7 @@ impl SimulatedRig {
 
     /// A millisecond of a head behind a wire.
     fn pass_wired(&mut self) {
+        self.strike();
         self.stretch += self.stretch_per_tick;
         let truth = self.truth();
         let sensed = self.sensed;
@@ -74,6 +87,15 @@ impl SimulatedRig {
         unseen.push_back(truth);
         let (actuation, open_loop) = done;
         self.exchange(&actuation, &open_loop);
+    }
+
+    /// Lets happen what is due.
+    fn strike(&mut self) {
+        let Brain::Wired(wired, _) = &self.brain else { return };
+        let now = wired.board().machine().tick_number();
+        let (due, later) = self.coming.drain(..).partition::<Vec<_>, _>(|&(tick, _)| tick <= now);
+        self.coming = later;
+        due.into_iter().for_each(|(_, trouble)| self.suffer(trouble));
     }
 
     /// Does something with a board behind a wire, if there is one.

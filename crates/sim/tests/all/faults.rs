@@ -97,7 +97,11 @@ fn fault_of(ticks: &[Tick], what: &str) -> (usize, Fault) {
 /// than the limit.
 fn check(case: &Case, config: &RigConfig) {
     check_on(case, config, |rig, _| rig);
-    check_on(case, config, |rig, seed| rig.behind_wire(LinkSettings::default(), seed));
+    check_on(case, config, |rig, seed| {
+        let mut rig = rig.behind_wire(LinkSettings::default(), seed);
+        rig.step();
+        rig
+    });
 }
 
 fn check_on(case: &Case, config: &RigConfig, on: fn(SimulatedRig, u64) -> SimulatedRig) {

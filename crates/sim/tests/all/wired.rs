@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use tracelight_device::{Host, Stage};
 use tracelight_rig::{Command, Fault, Phase, Rig};
 use tracelight_session::Feeder;
-use tracelight_sim::{LinkSettings, RigConfig, Run, Simulated, SimulatedRig, Trouble, arm, run};
+use tracelight_sim::{LinkSettings, RigConfig, Run, Simulated, SimulatedRig, Tick, Trouble, arm, run};
 use tracelight_trajectory::Plan;
 
 use crate::dice::Dice;
@@ -17,7 +17,9 @@ use crate::shapes::{POSE, circle, house, off_mm, plan_of, plan_of_all, star};
 const GOOD: LinkSettings = LinkSettings { loss: 0.0, corrupt: 0.0, delay_ms: 0.0, jitter_ms: 0.0 };
 
 fn wired(config: &RigConfig, link: LinkSettings, seed: u64) -> SimulatedRig {
-    SimulatedRig::new(config, POSE, seed).behind_wire(link, seed)
+    let mut rig = SimulatedRig::new(config, POSE, seed).behind_wire(link, seed);
+    rig.step();
+    rig
 }
 
 /// A controller in this process that has had a tick before anything is asked of it, as one behind a wire has.
@@ -171,4 +173,47 @@ fn a_cable_that_is_pulled_is_put_in_again_and_the_rest_is_drawn() {
         let ink = check_ink(&format!("seed {seed}"), &ran, &plan, &before);
         println!("seed {seed}: {} ticks, {ink:?}", ran.ticks.len());
     }
+}
+
+/// A board whose memory fails goes on by another law: its host sees it in the first tick that is another, and disarms.
+#[test]
+fn a_bit_of_the_boards_configuration_that_turns_is_seen_and_it_is_dark() {
+    let config = RigConfig::report();
+    let plan = plan_of(&config, circle(0.2));
+    let good = to_the_end(&mut wired(&config, GOOD, 3), &plan);
+    let mut dice = Dice::of_seed(9);
+    let (mut seen, mut without_effect) = (0, 0);
+    for _ in 0..400 {
+        let when = 300 + dice.below(plan.points.len() - 600) as u32;
+        let (word, bit) = (dice.below(150), dice.below(32) as u32);
+        let mut rig = wired(&config, GOOD, 3);
+        let ran = drawn(&mut rig, &plan, |rig, tick| {
+            if tick == when {
+                rig.suffer(Trouble::BitFlip(word, bit));
+            }
+        });
+        let other = |(a, b): (&Tick, &Tick)| a.telemetry.actuation != b.telemetry.actuation;
+        let other = ran.ticks.iter().zip(&good.ticks).position(other);
+        if let Stage::Failed(trouble) = rig.host().unwrap().stage() {
+            seen += 1;
+            let told =
+                ran.ticks.iter().position(|t| t.telemetry.fault() == Some(Fault::TwinDiverged)).unwrap();
+            assert!(told >= when as usize, "word {word}, bit {bit}: {trouble}");
+            // the host's word is there a tick later
+            for _ in 0..2 {
+                rig.step();
+            }
+            let lit = (0..300).filter(|_| rig.step().light).count();
+            let relay = 3;
+            assert!(
+                lit <= relay,
+                "word {word}, bit {bit}: {lit} ticks of light after it was seen: {trouble}"
+            );
+        } else {
+            without_effect += 1;
+            assert_eq!(other, None, "word {word}, bit {bit}: it did something else, and nobody saw it");
+        }
+    }
+    println!("of 400 bits {seen} seen, {without_effect} without effect");
+    assert!(seen > 60, "{seen}");
 }

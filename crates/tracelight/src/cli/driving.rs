@@ -27,7 +27,7 @@ pub(crate) struct DrivingArgs {
     /// Largest rounding of corners, such as 0.2mm; used where it is faster than a stop [default: none]
     #[arg(help_heading = "Time and order", long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = rounding)]
     pub(crate) corner: Option<Length>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
+    /// Rig: a preset's name (see `tracelight rigs`) or a rig file; emulated or emulated:RIG drives it by a board behind a wire
     #[arg(help_heading = "Rig and law", long, value_name = "RIG.toml|PRESET", default_value = "report")]
     pub(crate) rig: String,
     /// Shape of the dark moves between strokes

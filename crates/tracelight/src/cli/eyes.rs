@@ -63,7 +63,7 @@ pub(crate) struct FollowArgs {
     /// What the camera sees while the laser draws is reported but not used: no aim correction, no recovery of a bumped head
     #[arg(long, requires = "camera")]
     pub(crate) open_loop: bool,
-    /// Inject a fault in the simulated room: FAULT@SECONDS after drawing began; repeatable
+    /// Inject a fault in the simulated room, or with --rig emulated: FAULT@SECONDS after drawing began; repeatable
     ///
     /// pan-slip=COUNTS        the pan encoder slips by so many counts
     /// tilt-slip=COUNTS       the tilt encoder does
@@ -77,15 +77,13 @@ pub(crate) struct FollowArgs {
     /// camera-black           something covers the lens
     /// camera-slow=HZ         the camera sends so many images per second
     /// camera-stamps=SECONDS  time stamps of images are off by up to that
+    /// unplug=SECONDS         the cable to an emulated board is pulled for so long
+    /// host-stall=SECONDS     the host of an emulated board hangs for so long
+    /// link-loss=1%           so many packets are lost; all the time, without @
+    /// link-corrupt=1%        so many come spoilt; link-delay=MS, link-jitter=MS
     ///
     /// pan-slip=20@5: the pan encoder slips by 20 counts after 5 s.
-    #[arg(
-        help_heading = "Simulation",
-        long,
-        value_name = "TROUBLE",
-        requires = "camera",
-        verbatim_doc_comment
-    )]
+    #[arg(help_heading = "Simulation", long, value_name = "TROUBLE", verbatim_doc_comment)]
     pub(crate) sim_trouble: Vec<TroubleAt>,
 }
 

@@ -126,7 +126,6 @@ impl TraceArgs {
             ("--home", self.home),
             ("--calibration", self.eye.calibration.is_some()),
             ("--open-loop", self.follow.open_loop),
-            ("--sim-trouble", !self.follow.sim_trouble.is_empty()),
             ("--sim-camera", self.eye.sim_camera != SimulatedEyeName::default()),
         ];
         if self.wall.is_given() && self.eye.camera.is_some() {

@@ -44,6 +44,8 @@ pub(crate) fn run(args: &ResumeArgs, traced: Traced, stop: &Stop) -> Result<Answ
     check_newest(&dir)?;
     let mut request = traced(&asked.arguments)?;
     request.by_hand = args.by_hand.clone();
+    // what went wrong then does not go wrong again
+    request.follow.sim_trouble.clear();
     request.open = args.open;
     request.out = args.out.as_deref().map(whole).transpose()?;
     request.voice = args.voice;

@@ -15,6 +15,7 @@ mod completing;
 mod contract;
 mod device;
 mod drives;
+mod emulated;
 mod every_command;
 mod examples;
 mod extensions;
