@@ -30,7 +30,7 @@ fn main() {
 
 /// A host and a board that shake hands and draw a little, as each of them hears the other, and packets of each kind by themselves.
 fn packets(folder: &FilePath) {
-    use tracelight_rig::wire::{Ask, Order, Row, Rows, ToBoard};
+    use tracelight_rig::wire::{Ask, Order, Row, Rows, RowsHeader, ToBoard};
     use tracelight_rig::{Command, PanTilt};
     let piece = |kind: u8, bytes: &[u8]| {
         bytes.chunks(255).flat_map(|bytes| [&[kind, bytes.len() as u8], bytes].concat()).collect::<Vec<u8>>()
@@ -42,6 +42,7 @@ fn packets(folder: &FilePath) {
         Ask::Command(Command::Speed(0.5)),
         Ask::Command(Command::Pause),
         Ask::Command(Command::Abandon),
+        Ask::Command(Command::Acknowledge { fault: 1 }),
         Ask::Command(Command::Unhome),
         Ask::Command(Command::Finish),
     ];
@@ -54,13 +55,14 @@ fn packets(folder: &FilePath) {
         .into_iter()
         .chain(orders)
         .chain([
-            ToBoard::Disarm { before: 9 },
+            ToBoard::Disarm { before: 9, number: 1 },
             ToBoard::Again { from: 0, count: 9 },
             ToBoard::Seen { number: 1 },
         ]);
-    let kinds = said.flat_map(|said| piece(tracelight_fuzz::wire::BODY_TO_BOARD, said.body().bytes()));
+    let kinds = said.flat_map(|said| piece(tracelight_fuzz::wire::BODY_TO_BOARD, said.body(1).bytes()));
     write(folder, "kinds", hello.iter().copied().chain(kinds).collect::<Vec<u8>>());
-    let (rows, _) = Rows::body((3, 1, 8), &[Row::default().told(), Row::default().told()]);
+    let header = RowsHeader { first_tick: 3, wanted: 1, free: 8, disarm: 0, fault_number: 0 };
+    let (rows, _) = Rows::body(1, &header, &[Row::default().told(), Row::default().told()]);
     write(folder, "rows", piece(tracelight_fuzz::wire::BODY_TO_HOST, rows.bytes()));
     write(folder, "session", tracelight_fuzz::wire::session());
 }

@@ -33,7 +33,7 @@ fn board() -> Board<8, 64> {
 
 /// Whether any packet in these bytes may let light out.
 fn lights(packets: &mut Packets, bytes: &[u8]) -> bool {
-    let is_light = |said: ToBoard<'_>| match said {
+    let is_light = |(said, _): (ToBoard<'_>, u8)| match said {
         ToBoard::Order(order) => matches!(order.ask, Ask::Arm { .. } | Ask::Command(Command::Point(_))),
         _ => false,
     };

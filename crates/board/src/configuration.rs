@@ -15,6 +15,11 @@ pub const MOST_CONFIGURATION: usize = 1024;
 
 /// Longest time that anything in a configuration may take, ticks: ten minutes.
 const MOST_TICKS: u32 = 600_000;
+/// Longest time that a switch of the laser takes, and that light may stand, ticks.
+const MOST_SWITCH_TICKS: u32 = 1000;
+const MOST_STANDING_TICKS: u32 = 10_000;
+/// Angles of a count, rad: from a thousandth of a count of the finest encoders to a tenth of a turn.
+const COUNT_RAD: (f32, f32) = (1e-7, 0.7);
 /// Longest silence of a host before it is dark, ticks.
 const MOST_SILENCE_TICKS: u32 = 1000;
 
@@ -48,7 +53,13 @@ trait Words {
     /// A word that is one of a few, by its number.
     fn choice(&mut self, now: u32, choices: u32) -> u32;
     /// A whole number within its bounds.
-    fn whole(&mut self, value: &mut u32, most: u32);
+    fn between(&mut self, value: &mut u32, bounds: (u32, u32));
+
+    /// A whole number up to a bound.
+    fn whole(&mut self, value: &mut u32, most: u32) {
+        self.between(value, (0, most));
+    }
+
     /// A number within its bounds.
     fn real(&mut self, value: &mut f32, bounds: (f32, f32));
 
@@ -111,7 +122,7 @@ impl Words for Writer<'_> {
         now
     }
 
-    fn whole(&mut self, value: &mut u32, _: u32) {
+    fn between(&mut self, value: &mut u32, _: (u32, u32)) {
         self.put(*value);
     }
 
@@ -150,8 +161,8 @@ impl Words for Reader<'_> {
         self.get(|bits| bits < choices).unwrap_or(now)
     }
 
-    fn whole(&mut self, value: &mut u32, most: u32) {
-        *value = self.get(|bits| bits <= most).unwrap_or(*value);
+    fn between(&mut self, value: &mut u32, (least, most): (u32, u32)) {
+        *value = self.get(|bits| (least..=most).contains(&bits)).unwrap_or(*value);
     }
 
     fn real(&mut self, value: &mut f32, (lower, upper): (f32, f32)) {
@@ -182,12 +193,12 @@ fn visit(config: &mut Config, words: &mut impl Words) {
     } = config;
     words.whole(hold_limit_ticks, MOST_TICKS);
     for ticks in [laser_on_ticks, laser_off_ticks, enable_on_ticks, enable_off_ticks] {
-        words.whole(ticks, MOST_TICKS);
+        words.whole(ticks, MOST_SWITCH_TICKS);
     }
     words.whole(host_silence_ticks, MOST_SILENCE_TICKS);
-    words.whole(host_lost_ticks, MOST_TICKS);
+    words.between(host_lost_ticks, (*host_silence_ticks, MOST_TICKS));
     words.whole(lead_ticks, MOST_SILENCE_TICKS);
-    words.whole(standing_ticks, MOST_TICKS);
+    words.whole(standing_ticks, MOST_STANDING_TICKS);
     words.divisor(standing_radius_rad);
     words.divisor(tolerance_limit_rad);
     visit_model(model, words);
@@ -242,7 +253,8 @@ fn visit_axis(axis: &mut AxisConfig, words: &mut impl Words) {
         rating,
         limits,
     } = axis;
-    [torque_nm_per_v, limit_v, count_rad].into_iter().for_each(|value| words.divisor(value));
+    [torque_nm_per_v, limit_v].into_iter().for_each(|value| words.divisor(value));
+    words.real(count_rad, COUNT_RAD);
     let FrictionModel { viscous_pos, viscous_neg, coulomb_pos_nm, coulomb_neg_nm } = friction;
     [viscous_pos, viscous_neg, coulomb_pos_nm, coulomb_neg_nm].into_iter().for_each(|value| words.any(value));
     words.positive(unknown_nm);
@@ -265,7 +277,8 @@ fn visit_axis(axis: &mut AxisConfig, words: &mut impl Words) {
     words.real(continuous_share, (0.0, 1.0));
     words.divisor(heating_s);
     let JointLimits { lower_rad, upper_rad, speed_rad_s, acceleration_rad_s2 } = limits;
-    [lower_rad, upper_rad].into_iter().for_each(|value| words.any(value));
+    words.any(lower_rad);
+    words.real(upper_rad, (*lower_rad, f32::MAX));
     [speed_rad_s, acceleration_rad_s2].into_iter().for_each(|value| words.divisor(value));
 }
 

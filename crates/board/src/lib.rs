@@ -25,5 +25,5 @@ mod server;
 pub use board::Board;
 pub use configuration::{MOST_CONFIGURATION, read_configuration, write_configuration};
 pub use law::law_hash;
-pub use machine::{Inbox, MOST_ORDERS_A_TICK, Machine, May, NewConfiguration, Told};
+pub use machine::{Disarm, Inbox, MOST_ORDERS_A_TICK, Machine, May, NewConfiguration, Told};
 pub use server::{Identity, Server};

@@ -1,23 +1,35 @@
 //! What happens every tick.
 
 use tracelight_control::{Config, Controller, State};
-use tracelight_rig::wire::{Ask, Order, Row, RowBytes, as_told, is_before};
-use tracelight_rig::{Actuation, Command, FaultRecord, PanTilt, Phase, Sensed, Telemetry};
+use tracelight_rig::wire::{Ask, Configured, Order, Row, RowBytes, as_told, is_before};
+use tracelight_rig::{Actuation, Command, FaultRecord, Phase, Sensed, Telemetry};
 
 use crate::configuration::{MOST_CONFIGURATION, read_configuration, write_configuration};
 
 /// Orders that are taken before a tick at most: each takes some of its time.
 pub const MOST_ORDERS_A_TICK: u8 = 8;
 
+/// So far ahead of the last one the number of an Arm may be.
+const MOST_NONCES: u32 = 1 << 16;
+
 /// What came for a tick, beside orders.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Inbox {
     /// A keep-alive.
     pub heard: bool,
-    /// A Disarm: of the orders before that number those that let light out are void if they come later.
-    pub disarm: Option<u16>,
+    /// A Disarm.
+    pub disarm: Option<Disarm>,
     /// A configuration with which the controller begins anew.
     pub configuration: Option<NewConfiguration>,
+}
+
+/// A Disarm that came.
+#[derive(Clone, Copy, Debug)]
+pub struct Disarm {
+    /// Of the orders before that number those that let light out are void if they come later.
+    pub before: u16,
+    /// Its own number.
+    pub number: u16,
 }
 
 /// A configuration that is to be in force.
@@ -29,6 +41,10 @@ pub struct NewConfiguration {
     pub is_absolute: bool,
     /// Whether it is the one that was in force before, by which a head that was homed stays so.
     pub is_same: bool,
+    /// Its checksum.
+    pub crc: u32,
+    /// Hash of its law.
+    pub law: u32,
 }
 
 /// What orders may be taken now.
@@ -53,8 +69,12 @@ pub struct Told {
     pub phase: Phase,
     /// The latched fault.
     pub latched: Option<FaultRecord>,
-    /// In the first tick of a configuration: counts at which the head was told to stand, if it kept its homing.
-    pub began: Option<Option<PanTilt<i32>>>,
+    /// How many faults were latched since power-up.
+    pub fault_number: u32,
+    /// Number of the Disarm that acted before this tick, if one did.
+    pub disarm: Option<u16>,
+    /// In the first tick of a configuration: what the host is told of it.
+    pub began: Option<Configured>,
 }
 
 /// The controller, and which orders it takes.
@@ -137,28 +157,35 @@ impl<const SEGMENTS: usize> Machine<SEGMENTS> {
                 void |= !obey(controller, state, order.ask, &mut self.nonce);
             }
         }
-        if let Some(before) = inbox.disarm {
+        if let Some(Disarm { before, .. }) = inbox.disarm {
             let _ = controller.accept(state, Command::Disarm);
             self.void_before = Some(before);
         }
         let telemetry = controller.tick(state, &sensed);
         let row = row(&sensed, &telemetry, (taken, void), inbox);
         let free = u16::try_from(state.room()).unwrap_or(u16::MAX);
-        let Telemetry { actuation, phase, latched, .. } = telemetry;
-        (actuation, Some(Told { tick, row: row.told(), free, phase, latched, began }))
+        let Telemetry { actuation, phase, latched, fault_number, .. } = telemetry;
+        let disarm = inbox.disarm.map(|disarm| disarm.number);
+        (actuation, Some(Told { tick, row: row.told(), free, phase, latched, fault_number, disarm, began }))
     }
 
-    /// Begins anew with a configuration; the counts at which the head is told to stand, if it was homed and is held to be where it was.
-    fn begin(&mut self, new: &NewConfiguration, sensed: &Sensed, tick: u32) -> Option<PanTilt<i32>> {
-        let home =
-            self.running.as_ref().and_then(|(_, state)| state.homed_at(sensed)).filter(|_| new.is_same);
+    /// Begins anew with a configuration. A head that was homed is told where it stands, if it is held to be where it was; what is known of motors and light is kept.
+    fn begin(&mut self, new: &NewConfiguration, sensed: &Sensed, tick: u32) -> Configured {
+        let before = self.running.as_ref().map(|(_, state)| (state.homed_at(sensed), state.carried()));
         let controller = Controller::new(new.config);
         let state = if new.is_absolute { controller.start_homed(sensed) } else { controller.start(sensed) };
         let mut state: State<SEGMENTS> = state.counting_from(tick);
-        let kept = home.filter(|&home| controller.accept(&mut state, Command::Home(home)).is_ok());
+        let (home, carried) = before.map_or((None, None), |(home, carried)| (home, Some(carried)));
+        let kept = home
+            .filter(|_| new.is_same && !new.is_absolute)
+            .filter(|&home| controller.accept(&mut state, Command::Home(home)).is_ok());
+        if let Some(carried) = &carried {
+            controller.carry(&mut state, carried);
+        }
         self.running = Some((controller, state));
         self.void_before = None;
-        kept
+        let heat = carried.map(|carried| carried.heat);
+        Configured { crc: new.crc, tick, law: new.law, home: kept, heat }
     }
 }
 
@@ -176,7 +203,8 @@ fn obey<const SEGMENTS: usize>(
     last_nonce: &mut u32,
 ) -> bool {
     let command = match ask {
-        Ask::Arm { nonce, .. } if nonce <= *last_nonce => return false,
+        // nor is one that is far ahead: it would leave none for those that come
+        Ask::Arm { nonce, .. } if nonce <= *last_nonce || nonce - *last_nonce > MOST_NONCES => return false,
         Ask::Arm { nonce, acknowledges } => {
             *last_nonce = nonce;
             Command::Arm { acknowledges }

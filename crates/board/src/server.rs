@@ -1,19 +1,21 @@
 //! What speaks with the host.
 
 use tracelight_rig::wire::{
-    Ask, Configured, FromBoard, Greeting, MOST_PACKET, Order, Packets, Reset, Rows, ToBoard, VERSION,
-    WrongConfiguration, crc32, packed,
+    Ask, Configured, FromBoard, Greeting, MOST_PACKET, Order, Packets, Reset, Rows, RowsHeader, ToBoard,
+    VERSION, WrongConfiguration, connection_of, crc32, packed,
 };
-use tracelight_rig::{Capabilities, Command, FaultRecord, PanTilt, Phase};
+use tracelight_rig::{Capabilities, Command, FaultRecord, Phase};
 
 use crate::configuration::{MOST_CONFIGURATION, read_configuration};
 use crate::law::law_hash;
-use crate::machine::{Inbox, May, NewConfiguration, Told};
+use crate::machine::{Disarm, Inbox, May, NewConfiguration, Told};
 use crate::orders::Orders;
 use crate::ring::Ring;
 
 /// Ticks after which a fault that nobody has seen is told again.
 const FAULT_AGAIN_TICKS: u32 = 50;
+/// Ticks after which it greets again while nobody has greeted it.
+const GREET_TICKS: u32 = 100;
 /// Length of a tick, ns.
 const TICK_NS: u32 = 1_000_000;
 
@@ -39,8 +41,10 @@ pub struct Identity {
 pub struct Server<const SEGMENTS: usize, const ROWS: usize> {
     identity: Identity,
     packets: Packets,
-    /// Number of the connection; `None` before a host of this protocol's version has greeted.
+    /// Number of the connection; `None` before a host has greeted.
     session: Option<u32>,
+    /// The host that has greeted speaks another version.
+    is_other: bool,
     orders: Orders,
     /// Number of the order that comes next.
     wanted: u16,
@@ -51,15 +55,18 @@ pub struct Server<const SEGMENTS: usize, const ROWS: usize> {
     configuration: Option<u32>,
     /// What was answered when that came, in this connection.
     answered: Option<Configured>,
-    /// Checksum of the one that will be, and the hash of its law.
-    coming: Option<(u32, u32)>,
+    /// One will be from the next tick on.
+    is_coming: bool,
     rows: Ring<ROWS>,
     /// Tick of the row that is told next.
     untold: u32,
     /// Rows that are to be told again: the first one's tick, and how many.
     again: Option<(u32, u16)>,
     free: u16,
+    disarm: u16,
+    fault_number: u32,
     phase: Phase,
+    /// Number of the next tick.
     tick: u32,
     nonce: u32,
     due: Due,
@@ -85,17 +92,20 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
             identity,
             packets: Packets::new(),
             session: None,
+            is_other: false,
             orders: Orders::new(),
             wanted: 0,
             inbox: Inbox { heard: false, disarm: None, configuration: None },
             upload: [0; MOST_CONFIGURATION],
             configuration: None,
             answered: None,
-            coming: None,
+            is_coming: false,
             rows: Ring::new(),
             untold: 0,
             again: None,
             free: 0,
+            disarm: 0,
+            fault_number: 0,
             phase: Phase::Dark,
             tick: 0,
             nonce: 0,
@@ -107,7 +117,7 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
 
     /// Whether a configuration is in force from the next tick on.
     pub const fn is_configuring(&self) -> bool {
-        self.coming.is_some()
+        self.is_coming
     }
 
     /// Stretches of bytes that were no packet.
@@ -119,19 +129,26 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
     pub fn take(&mut self, bytes: &[u8], tick_us: u16) {
         let mut packets = self.packets;
         for &byte in bytes {
-            if let Some(said) = packets.push(byte).and_then(ToBoard::read) {
-                self.hear(said, tick_us);
+            if let Some((said, connection)) = packets.push(byte).and_then(ToBoard::read) {
+                self.hear(said, connection, tick_us);
             }
         }
         self.packets = packets;
     }
 
-    fn hear(&mut self, said: ToBoard<'_>, tick_us: u16) {
+    fn hear(&mut self, said: ToBoard<'_>, connection: u8, tick_us: u16) {
+        let is_ours =
+            !self.is_other && self.session.is_some_and(|session| connection_of(session) == connection);
         match said {
             ToBoard::Hello { version, session, .. } => self.greet(version, session),
-            // whoever says it, and whatever was said before
-            ToBoard::Disarm { before } => self.inbox.disarm = Some(before),
-            _ if self.session.is_none() => {}
+            ToBoard::Disarm { before, number } if is_ours => {
+                self.inbox.disarm = Some(Disarm { before, number })
+            }
+            // whoever says it: what has come and waits lights nothing
+            ToBoard::Disarm { .. } => {
+                self.inbox.disarm.get_or_insert(Disarm { before: self.wanted, number: self.disarm });
+            }
+            _ if !is_ours => {}
             ToBoard::Configure { offset, bytes } => self.keep(offset, bytes),
             ToBoard::Commit { length, crc } => {
                 if let Err(wrong) = self.commit(length, crc) {
@@ -142,13 +159,13 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
                 // what is lost before it comes again, with it
                 if order.sequence == self.wanted && self.orders.push(order) {
                     self.wanted = self.wanted.wrapping_add(1);
-                    // whoever asks for something new is there
-                    self.inbox.heard = true;
+                    // whoever asks for something new is there; light wants more than that
+                    self.inbox.heard |= !order.ask.lights();
                 }
             }
             ToBoard::KeepAlive { host_us } => {
                 self.inbox.heard = true;
-                self.due.pong = Some((host_us, self.tick, tick_us));
+                self.due.pong = Some((host_us, self.tick.wrapping_sub(1), tick_us));
             }
             ToBoard::Again { from, count } => self.again = Some((from, count)),
             ToBoard::Seen { number } => {
@@ -163,11 +180,11 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
     fn greet(&mut self, version: (u8, u8), session: u32) {
         self.orders = Orders::new();
         self.wanted = 0;
-        self.inbox = Inbox { disarm: Some(0), ..Inbox::default() };
+        self.inbox = Inbox { disarm: Some(Disarm { before: 0, number: 0 }), ..Inbox::default() };
         (self.untold, self.again) = (self.rows.end(), None);
         self.due = Due { greeting: true, configured: None, pong: None };
-        (self.coming, self.answered) = (None, None);
-        self.session = (version.0 == VERSION.0).then_some(session);
+        (self.is_coming, self.answered, self.disarm) = (false, None, 0);
+        (self.session, self.is_other) = (Some(session), version.0 != VERSION.0);
         if let Some((_, is_seen)) = &mut self.fault {
             *is_seen = false;
         }
@@ -180,7 +197,9 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
     }
 
     fn commit(&mut self, length: u16, crc: u32) -> Result<(), WrongConfiguration> {
-        if matches!(self.phase, Phase::Armed | Phase::Tracing | Phase::Holding | Phase::Testing) {
+        let is_armed = matches!(self.phase, Phase::Armed | Phase::Tracing | Phase::Holding | Phase::Testing);
+        // a Disarm that has come acts before the next tick, in which the controller begins
+        if is_armed && self.inbox.disarm.is_none() {
             return Err(WrongConfiguration::Armed);
         }
         let most = u16::try_from(MOST_CONFIGURATION).unwrap_or(u16::MAX);
@@ -195,11 +214,13 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
             return Ok(());
         }
         let config = read_configuration(bytes)?;
-        self.coming = Some((crc, law_hash(&config)));
+        self.is_coming = true;
         self.inbox.configuration = Some(NewConfiguration {
             config,
             is_absolute: self.identity.capabilities.absolute,
             is_same: self.configuration == Some(crc),
+            crc,
+            law: law_hash(&config),
         });
         Ok(())
     }
@@ -217,16 +238,21 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
         self.orders.pop()
     }
 
-    /// A tick is over: its number is that of the next one, and that of the last Arm.
-    pub const fn ticked(&mut self, tick: u32, nonce: u32) {
-        self.tick = tick;
-        self.nonce = nonce;
+    /// A tick is over: the number of the next one, and that of the last Arm. A board that nobody has greeted says now and then that it is there.
+    pub fn ticked(&mut self, tick: u32, nonce: u32) {
+        (self.tick, self.nonce) = (tick, nonce);
+        self.due.greeting |= self.session.is_none() && tick.is_multiple_of(GREET_TICKS);
     }
 
     /// Keeps what a tick was, for the host.
     pub fn told(&mut self, told: &Told) {
-        if let Some(home) = told.began {
-            self.begin(told.tick, home);
+        if let Some(configured) = told.began {
+            self.begin(configured);
+        }
+        self.disarm = told.disarm.unwrap_or(self.disarm);
+        self.fault_number = told.fault_number;
+        if told.latched.is_none() {
+            self.fault = None;
         }
         self.rows.push(told.tick, told.row);
         self.free = told.free;
@@ -239,13 +265,14 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
         }
     }
 
-    fn begin(&mut self, tick: u32, home: Option<PanTilt<i32>>) {
-        if let Some((crc, law)) = self.coming.take() {
-            self.configuration = Some(crc);
-            self.answered = Some(Configured { crc, tick, law, home });
-            self.due.configured = self.answered.map(Ok);
+    fn begin(&mut self, configured: Configured) {
+        self.configuration = Some(configured.crc);
+        // the host that sent it may have greeted anew meanwhile, and asks again then
+        if core::mem::take(&mut self.is_coming) {
+            self.answered = Some(configured);
+            self.due.configured = Some(Ok(configured));
         }
-        self.untold = tick;
+        self.untold = configured.tick;
         self.fault = None;
     }
 
@@ -267,11 +294,12 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
 
     /// The next packet; its length, 0 if nothing is to be said.
     fn packet(&mut self, out: &mut [u8; MOST_PACKET]) -> usize {
-        let mut say = |said: FromBoard<'_>| packed(said.body().bytes(), out);
+        let connection = connection_of(self.session.unwrap_or_default());
+        let mut say = |said: FromBoard<'_>| packed(said.body(connection).bytes(), out);
         if core::mem::take(&mut self.due.greeting) {
             return say(FromBoard::Hello(self.greeting()));
         }
-        if self.session.is_none() {
+        if self.session.is_none() || self.is_other {
             return 0;
         }
         if let Some(configured) = self.due.configured.take() {
@@ -286,7 +314,7 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
         if let Some((host_us, tick, tick_us)) = self.due.pong.take() {
             return say(FromBoard::Pong { host_us, tick, tick_us });
         }
-        self.rows(out)
+        self.rows(connection, out)
     }
 
     fn greeting(&self) -> Greeting {
@@ -310,12 +338,18 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
     }
 
     /// Rows that are to be told again, then those that were not told yet. A host that reads too slowly finds a gap.
-    fn rows(&mut self, out: &mut [u8; MOST_PACKET]) -> usize {
+    fn rows(&mut self, connection: u8, out: &mut [u8; MOST_PACKET]) -> usize {
         let waiting = u16::try_from(self.orders.len()).unwrap_or(u16::MAX);
-        let free = self.free.saturating_sub(waiting);
+        let header = RowsHeader {
+            first_tick: self.untold,
+            wanted: self.wanted,
+            free: self.free.saturating_sub(waiting),
+            disarm: self.disarm,
+            fault_number: self.fault_number,
+        };
         if let Some((from, count)) = self.again.take() {
             let rows = self.rows.from(from).take(count.into());
-            let (body, told) = Rows::body((from, self.wanted, free), rows);
+            let (body, told) = Rows::body(connection, &RowsHeader { first_tick: from, ..header }, rows);
             let left = count - u16::from(told);
             if told > 0 {
                 self.again = (left > 0).then(|| (from.wrapping_add(told.into()), left));
@@ -326,7 +360,8 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
         if behind > self.rows.end().wrapping_sub(self.rows.begin()) {
             self.untold = self.rows.begin();
         }
-        let (body, told) = Rows::body((self.untold, self.wanted, free), self.rows.from(self.untold));
+        let header = RowsHeader { first_tick: self.untold, ..header };
+        let (body, told) = Rows::body(connection, &header, self.rows.from(self.untold));
         if told == 0 {
             return 0;
         }

@@ -41,6 +41,13 @@ pub struct State<const SEGMENTS: usize = QUEUE_LENGTH> {
     home: PanTilt<i32>,
 }
 
+/// What outlives a controller: see [`State::carried`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Carried {
+    /// Heat of the motors, as a share of what full drive makes of them.
+    pub heat: PanTilt<f32>,
+}
+
 impl<const SEGMENTS: usize> State<SEGMENTS> {
     /// Starts the tick count at another number than 0, as after a long uptime.
     #[must_use]
@@ -66,11 +73,23 @@ impl<const SEGMENTS: usize> State<SEGMENTS> {
 
     /// Counts at which the head stands when its encoders read this, if it is homed and nothing moves it: where it can be told that it is.
     pub fn homed_at(&self, sensed: &Sensed) -> Option<PanTilt<i32>> {
-        let is_off = matches!(self.supervisor.phase, Phase::Dark | Phase::Done | Phase::Faulted);
+        let fault = self.supervisor.latched.map(|record| record.fault);
+        let is_off =
+            matches!(self.supervisor.phase, Phase::Dark | Phase::Done) || fault == Some(Fault::HostLost);
         let rates = self.servo.estimates().map(|estimate| estimate.velocity_rad_s);
         let is_still = self.supervisor.homed && is_off && rests(rates);
         let counts = |j: Joint| sensed.encoders[j].count.wrapping_add(self.home[j]);
         is_still.then(|| PanTilt::from_fn(counts))
+    }
+
+    /// What a controller that begins anew with the same head must not forget.
+    pub fn carried(&self) -> Carried {
+        Carried { heat: self.watch.heat() }
+    }
+
+    /// Whether a dot is wanted.
+    pub const fn is_pointing(&self) -> bool {
+        self.supervisor.is_pointing()
     }
 
     /// Whether it is known where the joints are.
@@ -121,6 +140,12 @@ impl Controller {
         }
     }
 
+    /// Has a state that has just begun remember what the one before it knew of the head; where light fell then is not known any more, so it may have been anywhere.
+    pub fn carry<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, carried: &Carried) {
+        state.watch.set_heat(carried.heat);
+        state.budget = LightBudget::spent(&self.config);
+    }
+
     /// Takes a command, or gives it back when the queue is full, or when a head is to be homed that is armed, moves, or can
     /// not be there. A segment that does not join the last one, or leaves its bounds anywhere, is taken
     /// and latches a fault. Arming that acknowledges other faults than there were, and arming and a dot without a host that is there, are taken and change nothing.
@@ -131,6 +156,12 @@ impl Controller {
     ) -> Result<(), Command> {
         match command {
             Command::Arm { acknowledges } => self.arm(state, acknowledges),
+            Command::Acknowledge { fault } => {
+                if state.supervisor.latched.is_some() {
+                    self.arm(state, fault);
+                    self.disarm(state);
+                }
+            }
             Command::Disarm => self.disarm(state),
             Command::Pause if state.supervisor.phase == Phase::Tracing => state.player.pause(true),
             Command::Pause => self.disarm(state),

@@ -43,7 +43,7 @@ mod watch;
 
 pub use axis::AxisConfig;
 pub use config::{Config, Drive, Gentle};
-pub use controller::{Controller, State};
+pub use controller::{Carried, Controller, State};
 pub use creep::Creep;
 pub use estimate::{Effort, Estimate, Learned};
 pub use law::{Biquad, Feedback, Feedforward, LawConfig, LeadLag, Pid, StateFeedback};

@@ -95,6 +95,15 @@ impl LightBudget {
         }
     }
 
+    /// Of a head of which nobody knows where it was lit before: it may have been anywhere, for as long as it may be.
+    pub(crate) fn spent(config: &Config) -> Self {
+        let mut budget = Self { recent: RecentLight::FULL, ..Self::new() };
+        budget.beneath.charge(0, config.standing_ticks, most(config));
+        budget.bound = most(config);
+        budget.next_bound = budget.bound;
+        budget
+    }
+
     /// One tick passes. `gate` is whether light was wanted in the last one, `seen` whether any is seen; the joints are at `angle_rad`,
     /// `None` where nobody knows.
     pub fn tick(&mut self, config: &Config, angle_rad: Option<PanTilt<f32>>, gate: bool, seen: Option<bool>) {

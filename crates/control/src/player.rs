@@ -219,7 +219,9 @@ impl<const SEGMENTS: usize> Player<SEGMENTS> {
 
     /// Whether so many ticks of a plan are there, or all of it.
     pub(crate) fn has_ahead(&self, ticks: u32) -> bool {
-        self.finished || self.end.is_some_and(|(end, _)| end.saturating_sub(self.tick) >= ticks)
+        self.finished
+            || !self.has_room()
+            || self.end.is_some_and(|(end, _)| end.saturating_sub(self.tick) >= ticks)
     }
 
     pub(crate) const fn is_empty(&self) -> bool {

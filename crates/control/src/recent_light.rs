@@ -18,6 +18,16 @@ pub(crate) struct RecentLight {
 
 impl RecentLight {
     pub(crate) const NONE: Self = Self { lit: [0; PARTS + 1], part: 0, passed: 0, sum: 0 };
+    /// As much as there may be, just now.
+    pub(crate) const FULL: Self = {
+        let mut lit = [0; PARTS + 1];
+        let mut part = 0;
+        while part < PARTS / 10 {
+            lit[part] = PART_TICKS;
+            part += 1;
+        }
+        Self { lit, part: part - 1, passed: PART_TICKS, sum: Self::MOST_TICKS }
+    };
     /// Most of them: a tenth.
     pub(crate) const MOST_TICKS: u32 = PARTS as u32 * PART_TICKS as u32 / 10;
 

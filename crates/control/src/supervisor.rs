@@ -142,6 +142,11 @@ impl Supervisor {
         }
     }
 
+    /// Whether a dot is wanted.
+    pub(crate) const fn is_pointing(&self) -> bool {
+        self.pointing_ticks > 0
+    }
+
     /// The encoders know from now on where the joints are, which rest, without a job.
     pub(crate) fn home(&mut self) {
         self.homed = true;
@@ -165,7 +170,9 @@ impl Supervisor {
         match self.phase {
             // a job that was disarmed on its way goes on only from where it stopped, a new one from where it begins
             Phase::Armed if at.segment.is_some() && (at.begun || strayed(at)) => self.begin_hold(),
-            Phase::Armed if at.segment.is_some() && at.may_begin => self.phase = Phase::Tracing,
+            Phase::Armed if at.segment.is_some() && at.may_begin && !at.host_silent => {
+                self.phase = Phase::Tracing
+            }
             Phase::Tracing if at.done => self.phase = Phase::Done,
             Phase::Tracing if at.starved => self.trip(at.tick, Finding::of(Fault::SetpointsStale)),
             Phase::Tracing if must_hold(at) => self.begin_hold(),

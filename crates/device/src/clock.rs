@@ -16,13 +16,22 @@ pub struct Clock {
     answers: VecDeque<(f64, f64, f64)>,
     /// The best of each second.
     best: VecDeque<(f64, f64, f64)>,
+    /// Ticks of the last answer, through their wrap.
+    tick: i64,
 }
 
 impl Clock {
-    /// Takes an answer: sent and come by the host's clock, µs, and when the board had it by its own, µs.
-    pub(crate) fn hear(&mut self, sent_us: u64, came_us: u64, board_us: f64) {
+    /// Takes an answer: sent and come by the host's clock, µs, and when the board had it: in which tick, and how far in it, µs. One that was sent later than it came, or
+    /// long ago, is none.
+    pub(crate) fn hear(&mut self, (sent_us, came_us): (u64, u64), tick: u32, tick_us: u16) {
+        const LONGEST_US: u64 = 10_000_000;
+        if sent_us > came_us || came_us - sent_us > LONGEST_US {
+            return;
+        }
+        self.tick = if self.answers.is_empty() { tick.into() } else { self.unwrapped(tick) };
+        let board_us = self.tick as f64 * TICK_US + f64::from(tick_us);
         let (sent, came) = (sent_us as f64, came_us as f64);
-        let (there_and_back, middle) = ((came - sent).max(0.0), 0.5 * (sent + came));
+        let (there_and_back, middle) = (came - sent, 0.5 * (sent + came));
         let answer = (middle, middle - board_us, there_and_back);
         if self.answers.len() == KEPT {
             self.answers.pop_front();
@@ -44,10 +53,15 @@ impl Clock {
         }
     }
 
+    /// A tick through the wrap of its number: the one nearest to the last answer's.
+    fn unwrapped(&self, tick: u32) -> i64 {
+        self.tick + i64::from(tick.wrapping_sub(self.tick as u32).cast_signed())
+    }
+
     /// When a tick began by the host's clock, µs, and how far off that may be, µs; `None` before the first answer.
     pub fn instant_of(&self, tick: u32) -> Option<(f64, f64)> {
         let &(at, offset, there_and_back) = self.answers.iter().min_by(|a, b| a.2.total_cmp(&b.2))?;
-        let board_us = f64::from(tick) * TICK_US;
+        let board_us = self.unwrapped(tick) as f64 * TICK_US;
         let drifted = self.drift().unwrap_or(0.0) * (board_us + offset - at);
         Some((board_us + offset + drifted, 0.5 * there_and_back))
     }
@@ -97,17 +111,28 @@ mod tests {
         for answer in 0..12_000 {
             sent += 10_000;
             let (there, back) = (150 + roll(400) + 8000 * u64::from(roll(20) == 0), 150 + roll(400));
-            clock.hear(sent, sent + there + back, board_of((sent + there) as f64));
+            // ticks wrap in the middle of it
+            let number = |board_us: f64| ((board_us / 1000.0) as u32).wrapping_sub(60_000);
+            let board_us = board_of((sent + there) as f64);
+            clock.hear((sent, sent + there + back), number(board_us), (board_us % 1000.0) as u16);
             if answer > 3000 {
                 let tick = (board_of(sent as f64) / 1000.0) as u32;
                 let truly = f64::from(tick) * 1000.0 / (1.0 - 80e-6) + 12.3e6;
-                let (told, unsure) = clock.instant_of(tick).unwrap();
+                let (told, unsure) = clock.instant_of(number(board_of(sent as f64))).unwrap();
                 worst = worst.max((told - truly).abs());
                 assert!((told - truly).abs() <= unsure + 60.0, "{answer}: {} of {unsure}", told - truly);
             }
         }
         assert!(worst < 500.0, "{worst} us");
         assert!((clock.drift().unwrap() - 80e-6).abs() < 20e-6, "{:?}", clock.drift());
+    }
+
+    #[test]
+    fn an_answer_from_the_future_or_of_long_ago_is_none() {
+        let mut clock = Clock::default();
+        clock.hear((5000, 4000), 1, 0);
+        clock.hear((0, 20_000_000), 1, 0);
+        assert_eq!(clock.instant_of(1), None);
     }
 
     #[test]

@@ -1,11 +1,12 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use tracelight_board::{MOST_CONFIGURATION, law_hash, write_configuration};
-use tracelight_control::Config;
+use tracelight_control::{Carried, Config};
 use tracelight_rig::wire::{
-    Ask, Configured, FromBoard, Greeting, MOST_PACKET, Packets, Rows, ToBoard, VERSION, crc32, packed,
+    Ask, Configured, FromBoard, Greeting, MOST_PACKET, Packets, Rows, ToBoard, VERSION,
+    WrongConfiguration as Wrong, connection_of, crc32, packed,
 };
-use tracelight_rig::{Command, Phase, Telemetry};
+use tracelight_rig::{Command, Telemetry};
 
 use crate::clock::Clock;
 use crate::outbox::Outbox;
@@ -28,11 +29,15 @@ const ALIVE_US: u64 = 40_000;
 const DISARM_AGAIN_US: u64 = 5_000;
 /// How often lost rows are asked for, µs.
 const ROWS_AGAIN_US: u64 = 10_000;
-/// Length of a tick, ns and µs.
+/// Length of a tick, ns.
 const TICK_NS: u32 = 1_000_000;
-const TICK_US: f64 = 1000.0;
 /// How long rows may be missing that are asked for, µs.
 const MOST_MISSING_US: u64 = 3_000_000;
+/// How long nothing may come of a board that runs, µs: time to put a cable in again.
+const MOST_GONE_US: u64 = 10_000_000;
+/// Remarks of a board that are kept, and ticks that nobody has fetched.
+const MOST_REMARKS: usize = 64;
+const MOST_UNREAD: usize = 4096;
 /// Rows that are kept ahead of one that is missing.
 const MOST_AHEAD: u32 = 1 << 14;
 
@@ -68,8 +73,10 @@ pub struct Host {
     telemetry: VecDeque<Telemetry>,
     /// The board was disarmed in the last tick that was followed, and no dot was wanted.
     is_off: bool,
-    /// Number before which orders that let light out are void, until the board says that it is disarmed.
+    /// Number before which orders that let light out are void, until the board says that this Disarm acted.
     disarm: Option<u16>,
+    /// Number of the last Disarm.
+    disarms: u16,
     is_alive: bool,
     seen: Option<u32>,
     remarks: VecDeque<String>,
@@ -123,6 +130,7 @@ impl Host {
             telemetry: VecDeque::new(),
             is_off: false,
             disarm: None,
+            disarms: 0,
             is_alive: false,
             seen: None,
             remarks: VecDeque::new(),
@@ -176,7 +184,7 @@ impl Host {
         self.session = session;
         self.stage = Stage::Greeting;
         self.packets = Packets::new();
-        self.disarm = None;
+        (self.disarm, self.disarms) = (None, 0);
         self.times = Times::default();
     }
 
@@ -192,19 +200,23 @@ impl Host {
             }
             // nothing that would let light out is on its way, and none can be
             Command::Disarm if self.is_off && !self.outbox.lights() => return Ok(()),
+            // a greeting disarms
+            Command::Disarm if !self.takes_orders() => return Ok(()),
             Command::Disarm => {
                 self.disarm = Some(self.outbox.next());
+                self.disarms = self.disarms.wrapping_add(1);
                 self.times.disarmed = None;
                 return Ok(());
             }
-            _ if self.stage != Stage::Running || self.begins_again.is_some() => return Err(command),
+            _ if !self.takes_orders() => return Err(command),
             Command::Home(_) if self.twin.as_ref().is_some_and(|twin| twin.refuses(command)) => {
                 return Err(command);
             }
             Command::Arm { acknowledges } => {
-                let Some(board) = &mut self.board else { return Err(command) };
-                board.nonce = board.nonce.saturating_add(1);
-                Ask::Arm { nonce: board.nonce, acknowledges }
+                let next = self.board.as_mut().and_then(|board| Some((board.nonce.checked_add(1)?, board)));
+                let Some((nonce, board)) = next else { return Err(command) };
+                board.nonce = nonce;
+                Ask::Arm { nonce, acknowledges }
             }
             _ => Ask::Command(command),
         };
@@ -215,11 +227,17 @@ impl Host {
         Ok(())
     }
 
+    /// Whether what is asked can be sent: orders have their numbers.
+    fn takes_orders(&self) -> bool {
+        self.stage == Stage::Running && self.begins_again.is_none()
+    }
+
     /// What is to be sent now.
     pub fn give(&mut self, now_us: u64, out: &mut Vec<u8>) {
         let mut packet = [0; MOST_PACKET];
+        let connection = connection_of(self.session);
         let mut say = |said: ToBoard<'_>| {
-            let length = packed(said.body().bytes(), &mut packet);
+            let length = packed(said.body(connection).bytes(), &mut packet);
             out.extend_from_slice(&packet[..length]);
         };
         match self.stage {
@@ -249,7 +267,16 @@ impl Host {
                 }
             }
             Stage::Running => {
-                // nothing is armed for a host that was not heard before
+                if now_us.saturating_sub(*self.times.heard.get_or_insert(now_us)) > MOST_GONE_US {
+                    self.stage = Stage::Failed(Trouble::Silent { waited_us: MOST_GONE_US });
+                    return;
+                }
+                // before all: what was asked earlier and would let light out is void then, and what is asked later waits until it acted
+                if let Some(before) = self.disarm
+                    && is_due(&mut self.times.disarmed, now_us, DISARM_AGAIN_US)
+                {
+                    say(ToBoard::Disarm { before, number: self.disarms });
+                }
                 if core::mem::take(&mut self.is_alive) {
                     self.times.said = Some(now_us);
                 }
@@ -257,14 +284,15 @@ impl Host {
                 if is_alive && is_due(&mut self.times.alive, now_us, KEEP_ALIVE_US) {
                     say(ToBoard::KeepAlive { host_us: now_us });
                 }
-                // what was asked before a Disarm goes before it, what was asked after it waits until it acted
-                while let Some(order) = self.outbox.send(now_us, self.disarm) {
-                    say(ToBoard::Order(order));
-                }
-                if let Some(before) = self.disarm
-                    && is_due(&mut self.times.disarmed, now_us, DISARM_AGAIN_US)
+                while self.begins_again.is_none()
+                    && let Some(order) = self.outbox.send(now_us, self.disarm)
                 {
-                    say(ToBoard::Disarm { before });
+                    // nothing is lit for a host that was not heard before
+                    if order.ask.lights() && is_alive {
+                        self.times.alive = Some(now_us);
+                        say(ToBoard::KeepAlive { host_us: now_us });
+                    }
+                    say(ToBoard::Order(order));
                 }
                 if let Some((from, count)) = self.missing() {
                     let since = *self.times.missing.get_or_insert(now_us);
@@ -284,7 +312,7 @@ impl Host {
             }
             Stage::Failed(_) => {
                 if is_due(&mut self.times.disarmed, now_us, DISARM_AGAIN_US) {
-                    say(ToBoard::Disarm { before: self.outbox.next() });
+                    say(ToBoard::Disarm { before: self.outbox.next(), number: self.disarms });
                 }
             }
         }
@@ -298,7 +326,8 @@ impl Host {
             let mut said = [0; tracelight_rig::wire::MOST_BODY];
             let length = body.len();
             said[..length].copy_from_slice(body);
-            if let Some(said) = FromBoard::read(&said[..length])
+            if let Some((said, connection)) = FromBoard::read(&said[..length])
+                && (connection == connection_of(self.session) || matches!(said, FromBoard::Hello(_)))
                 && let Err(trouble) = self.hear(said, now_us)
             {
                 self.stage = Stage::Failed(trouble);
@@ -316,6 +345,12 @@ impl Host {
             }
             // unasked: it has started anew
             (FromBoard::Hello(board), Stage::Running) if board.session == 0 => return Err(Trouble::Reset),
+            (FromBoard::Hello(board), Stage::Configuring) if board.session == 0 => {
+                self.stage = Stage::Greeting;
+                self.times.greeted = None;
+            }
+            // a piece was lost, or a Disarm did not act yet: it is sent again
+            (FromBoard::Configured(Err(Wrong::Checksum(_) | Wrong::Armed)), Stage::Configuring) => {}
             (FromBoard::Configured(answer), Stage::Configuring) => {
                 self.times.heard = Some(now_us);
                 self.begin(answer.map_err(Trouble::Configuration)?)?;
@@ -326,10 +361,15 @@ impl Host {
                 self.follow()?;
             }
             (FromBoard::Pong { host_us, tick, tick_us }, _) => {
-                self.clock.hear(host_us, now_us, f64::from(tick) * TICK_US + f64::from(tick_us));
+                self.clock.hear((host_us, now_us), tick, tick_us);
             }
             (FromBoard::Fault(record), Stage::Running) => self.seen = Some(record.number),
-            (FromBoard::Log(text), _) => self.remarks.push_back(text.to_owned()),
+            (FromBoard::Log(text), _) => {
+                if self.remarks.len() == MOST_REMARKS {
+                    self.remarks.pop_front();
+                }
+                self.remarks.push_back(text.to_owned());
+            }
             _ => {}
         }
         Ok(())
@@ -368,7 +408,7 @@ impl Host {
 
     /// The configuration is in force.
     fn begin(&mut self, configured: Configured) -> Result<(), Trouble> {
-        let Configured { crc, tick, law, home } = configured;
+        let Configured { crc, tick, law, home, heat } = configured;
         if crc != crc32(&self.configuration) {
             // of an earlier connection
             return Ok(());
@@ -378,7 +418,8 @@ impl Host {
             return Err(Trouble::Law { host, board: law });
         }
         let is_absolute = self.board.is_some_and(|board| board.capabilities.absolute);
-        self.twin = Some(Twin::new(self.config, Start { tick, is_absolute, home }));
+        let carried = heat.map(|heat| Carried { heat });
+        self.twin = Some(Twin::new(self.config, Start { tick, is_absolute, home, carried }));
         self.next_tick = tick;
         self.rows.clear();
         self.stage = Stage::Running;
@@ -389,6 +430,9 @@ impl Host {
     fn keep(&mut self, rows: &Rows<'_>, now_us: u64) {
         if self.begins_again.is_none() {
             self.outbox.hear(rows.wanted, rows.free, now_us);
+            if rows.disarm == self.disarms {
+                self.disarm = None;
+            }
         }
         let inputs = self.board.map(|board| board.capabilities.inputs).unwrap_or_default();
         for (tick, row) in rows.rows(inputs) {
@@ -406,6 +450,10 @@ impl Host {
                 self.outbox.begin_again();
                 self.begins_again = None;
             }
+            // whoever does not look does not get more
+            if self.telemetry.len() >= MOST_UNREAD {
+                break;
+            }
             let Some(row) = self.rows.remove(&self.next_tick) else { break };
             let Some(orders) = self.outbox.take(row.taken) else {
                 return Err(Trouble::Diverged(crate::trouble::Divergence {
@@ -415,11 +463,8 @@ impl Host {
                     board: row.taken.into(),
                 }));
             };
-            if row.disarmed {
-                self.disarm = None;
-            }
             let told = twin.follow(self.next_tick, &row, &orders)?;
-            self.is_off = told.phase == Phase::Dark && !told.actuation.gate && !told.actuation.enable;
+            self.is_off = twin.is_off(&told);
             self.telemetry.push_back(told);
             self.times.missing = None;
             self.next_tick = self.next_tick.wrapping_add(1);

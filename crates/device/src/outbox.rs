@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use tracelight_rig::Command;
 use tracelight_rig::wire::{Ask, Order, WINDOW, is_before};
 
 /// After so long without an answer all that is on its way is sent again, µs.
@@ -95,14 +96,15 @@ impl Outbox {
         (usize::from(count) <= self.orders.len()).then(|| self.orders.drain(..usize::from(count)).collect())
     }
 
-    /// After a new greeting: what was not taken is sent from number 0 on, but for what would let light out.
+    /// After a new greeting: what was not taken is sent from number 0 on, but for what would let light out, and for where a head was then.
     pub(crate) fn begin_again(&mut self) {
-        let left = self.orders.drain(..).filter(|order| !order.ask.lights()).collect::<Vec<_>>();
+        let lasts = |ask: Ask| !ask.lights() && !matches!(ask, Ask::Command(Command::Home(_)));
+        let left = self.orders.drain(..).filter(|order| lasts(order.ask)).collect::<Vec<_>>();
         *self = Self::default();
         left.into_iter().for_each(|order| self.push(order.ask));
     }
 }
 
 const fn is_segment(ask: Ask) -> bool {
-    matches!(ask, Ask::Command(tracelight_rig::Command::Append(_)))
+    matches!(ask, Ask::Command(Command::Append(_)))
 }

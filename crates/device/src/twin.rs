@@ -1,6 +1,6 @@
-use tracelight_control::{Config, Controller, State};
+use tracelight_control::{Carried, Config, Controller, State};
 use tracelight_rig::wire::{Ask, Order, Row};
-use tracelight_rig::{Command, PanTilt, Telemetry};
+use tracelight_rig::{Command, PanTilt, Phase, Telemetry};
 
 use crate::trouble::{Divergence, Trouble};
 
@@ -24,6 +24,8 @@ pub(crate) struct Start {
     pub(crate) is_absolute: bool,
     /// Counts at which it was told to stand, if it kept its homing.
     pub(crate) home: Option<PanTilt<i32>>,
+    /// What it knew of its head before.
+    pub(crate) carried: Option<Carried>,
 }
 
 impl Twin {
@@ -35,6 +37,11 @@ impl Twin {
     /// The controller's configuration is the board's; so is its state, once a row was followed.
     pub fn state(&self) -> Option<&State<MOST_SEGMENTS>> {
         self.state.as_deref()
+    }
+
+    /// Whether the board is disarmed, as far as is known, and no dot is wanted.
+    pub(crate) fn is_off(&self, told: &Telemetry) -> bool {
+        told.phase == Phase::Dark && self.state().is_some_and(|state| !state.is_pointing())
     }
 
     /// Whether a command would be refused by what is known of the board now, and then is.
@@ -57,6 +64,9 @@ impl Twin {
             let mut state = Box::new(state.counting_from(start.tick));
             if let Some(home) = start.home {
                 let _ = controller.accept(&mut state, Command::Home(home));
+            }
+            if let Some(carried) = &start.carried {
+                controller.carry(&mut state, carried);
             }
             state
         });

@@ -83,6 +83,11 @@ pub enum Command {
         /// older number.
         acknowledges: u32,
     },
+    /// Clear a fault without permitting light, if it is the latest. Like [`Arm`](Self::Arm) and [`Disarm`](Self::Disarm) at once, but nothing can come between.
+    Acknowledge {
+        /// Latest [`Telemetry::fault_number`](crate::Telemetry::fault_number) that the sender has read.
+        fault: u32,
+    },
     /// Forbid light and stop the plan's clock, as soon as light that is still on its way out has fallen on its stroke. The head holds its
     /// position. Armed again, the job continues from there; after its end, a new one may begin at tick 0.
     Disarm,

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use tracelight_rig::wire::{
-    Ask, Configured, FromBoard, Greeting, Order, Reset, Row, RowBytes, Rows, ToBoard, WrongConfiguration,
-    as_told, is_before,
+    Ask, Configured, FromBoard, Greeting, Order, Reset, Row, RowBytes, Rows, RowsHeader, ToBoard,
+    WrongConfiguration, as_told, is_before,
 };
 use tracelight_rig::{
     Actuation, Capabilities, Command, DarknessSet, Exceeded, Fault, FaultRecord, Input, InputState, Inputs,
@@ -58,7 +58,7 @@ impl Dice {
     }
 
     fn ask(&mut self) -> Ask {
-        let command = match self.below(9) {
+        let command = match self.below(10) {
             0 => return Ask::Arm { nonce: self.u32(), acknowledges: self.u32() },
             1 => Command::Append(self.segment()),
             2 => Command::Finish,
@@ -67,6 +67,7 @@ impl Dice {
             5 => Command::Point(self.u32() as u16),
             6 => Command::Speed(self.f32()),
             7 => Command::Pause,
+            8 => Command::Acknowledge { fault: self.u32() },
             _ => Command::Abandon,
         };
         Ask::Command(command)
@@ -82,7 +83,7 @@ impl Dice {
             1 => ToBoard::Configure { offset: self.u32() as u16, bytes: &[1, 0, 3, 0, 0] },
             2 => ToBoard::Commit { length: self.u32() as u16, crc: self.u32() },
             3 => ToBoard::KeepAlive { host_us: self.roll() },
-            4 => ToBoard::Disarm { before: self.u32() as u16 },
+            4 => ToBoard::Disarm { before: self.u32() as u16, number: self.u32() as u16 },
             5 => ToBoard::Again { from: self.u32(), count: self.u32() as u16 },
             6 => ToBoard::Seen { number: self.u32() },
             _ => ToBoard::Order(Order { sequence: self.u32() as u16, ask: self.ask() }),
@@ -171,6 +172,7 @@ impl Dice {
                     tick: self.u32(),
                     law: self.u32(),
                     home: self.flag().then(|| PanTilt::new(self.u32() as i32, self.u32() as i32)),
+                    heat: self.flag().then(|| PanTilt::new(self.f32(), self.f32())),
                 }),
             }),
             2 => FromBoard::Pong { host_us: self.roll(), tick: self.u32(), tick_us: self.u32() as u16 },
@@ -191,9 +193,11 @@ fn whatever_a_host_says_a_board_reads() {
     let mut dice = Dice(1);
     for _ in 0..50_000 {
         let said = dice.hosts();
-        let body = said.body();
+        let connection = dice.u32() as u8;
+        let body = said.body(connection);
         assert!(!body.bytes().is_empty(), "{said:?} does not fit");
-        assert_eq!(ToBoard::read(body.bytes()), Some(said));
+        let connection = if matches!(said, ToBoard::Hello { .. }) { 0 } else { connection };
+        assert_eq!(ToBoard::read(body.bytes()), Some((said, connection)));
         assert_eq!(FromBoard::read(body.bytes()), None, "{said:?} is no board's");
     }
 }
@@ -203,8 +207,10 @@ fn whatever_a_board_says_a_host_reads() {
     let mut dice = Dice(2);
     for _ in 0..50_000 {
         let said = dice.boards();
-        let body = said.body();
-        assert_eq!(FromBoard::read(body.bytes()), Some(said));
+        let connection = dice.u32() as u8;
+        let body = said.body(connection);
+        let connection = if matches!(said, FromBoard::Hello(_)) { 0 } else { connection };
+        assert_eq!(FromBoard::read(body.bytes()), Some((said, connection)));
         assert_eq!(ToBoard::read(body.bytes()), None, "{said:?} is no host's");
     }
 }
@@ -223,11 +229,16 @@ fn rows_come_back_bit_for_bit_as_many_as_fit() {
                 row
             })
             .collect();
+        let header = RowsHeader { first_tick: u32::MAX - 2, wanted: 7, free: 9, disarm: 4, fault_number: 5 };
         let told: Vec<RowBytes> = rows.iter().map(Row::told).collect();
-        let (body, count) = Rows::body((u32::MAX - 2, 7, 9), &told);
+        let (body, count) = Rows::body(3, &header, &told);
         assert_eq!(count, if has_foot { 5 } else { 7 });
-        let Some(FromBoard::Rows(read)) = FromBoard::read(body.bytes()) else { panic!("no rows") };
-        assert_eq!((read.first_tick, read.wanted, read.free, read.count), (u32::MAX - 2, 7, 9, count));
+        let Some((FromBoard::Rows(read), 3)) = FromBoard::read(body.bytes()) else { panic!("no rows") };
+        let Rows { first_tick, wanted, free, disarm, fault_number, .. } = read;
+        assert_eq!(RowsHeader { first_tick, wanted, free, disarm, fault_number }, header);
+        assert_eq!(read.count, count);
+        // half a row is none
+        assert_eq!(FromBoard::read(&body.bytes()[..body.bytes().len() - 1]), None);
         let back: Vec<(u32, Row)> = read.rows(inputs).collect();
         let there = rows.iter().take(count.into()).enumerate();
         assert!(there.map(|(at, row)| ((u32::MAX - 2).wrapping_add(at as u32), *row)).eq(back));
@@ -270,7 +281,7 @@ fn a_body_that_is_spoilt_is_read_as_something_or_not_at_all() {
     let (mut read, mut refused) = (0, 0);
     for _ in 0..200_000 {
         let host = dice.flag();
-        let body = if host { dice.hosts().body() } else { dice.boards().body() };
+        let body = if host { dice.hosts().body(1) } else { dice.boards().body(1) };
         let mut bytes = body.bytes().to_vec();
         match dice.below(4) {
             0 => bytes.truncate(dice.below(bytes.len() as u64 + 1) as usize),

@@ -345,9 +345,8 @@ impl<R: Rig> Session<R> {
 
     fn clear(&mut self) {
         let acknowledges = self.told.fault_number;
-        [Command::KeepAlive, Command::Arm { acknowledges }, Command::Disarm]
-            .into_iter()
-            .for_each(|command| self.send(command));
+        self.send(Command::KeepAlive);
+        self.send(Command::Acknowledge { fault: acknowledges });
     }
 
     /// Turns the head in the dark, from where it rests; of one that is not homed nobody knows where that is but by what it was told before.

@@ -18,6 +18,8 @@ const LEAD_TICKS: u32 = 200;
 /// Length of a tick, µs, and how far into one the board has answered.
 const TICK_US: u64 = 1000;
 const ANSWERED_US: u64 = 900;
+/// What comes before a tick begins comes at the end of the one before it, µs.
+const LAST_US: u16 = 999;
 /// Kind of board: none that anybody can buy.
 const EMULATED: u16 = 0;
 /// Bytes that a board hands over in a tick at most: what USB carries.
@@ -62,16 +64,25 @@ impl Wired {
         wired
     }
 
-    /// Greets and configures before time begins: nothing moves meanwhile.
+    /// Greets and configures before time begins, through the wire as it is: nothing moves meanwhile.
     fn shake_hands(&mut self) {
-        while !self.board.server().is_configuring() && self.host.stage() != Stage::Running {
+        while !self.board.server().is_configuring() && !self.is_over() {
             let mut bytes = Vec::new();
             self.host.give(self.now_us, &mut bytes);
-            self.board.take(&bytes, 0);
-            let bytes = self.said();
-            self.host.take(&bytes, self.now_us);
+            self.to_board.send(self.now_us, &bytes);
+            let came = self.to_board.come(self.now_us);
+            self.board.take(&came, LAST_US);
+            let said = self.said();
+            self.to_host.send(self.now_us, &said);
+            let came = self.to_host.come(self.now_us);
+            self.host.take(&came, self.now_us);
             self.now_us += TICK_US;
         }
+    }
+
+    /// Whether the host drives the head, or can do so no more.
+    pub(crate) const fn is_over(&self) -> bool {
+        matches!(self.host.stage(), Stage::Running | Stage::Failed(_))
     }
 
     /// What the board says.
@@ -149,7 +160,7 @@ impl Wired {
             self.to_board.send(self.now_us, &bytes);
         }
         let came = self.to_board.come(self.now_us);
-        self.board.take(&came, 0);
+        self.board.take(&came, LAST_US);
         let actuation = self.board.tick(sensed);
         exchange(&self.board, &actuation);
         let said = self.said();

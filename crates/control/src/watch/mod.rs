@@ -162,6 +162,16 @@ impl Watch {
         faults.pan.or(faults.tilt)
     }
 
+    /// Heat of the motors, as a share of what full drive makes of them.
+    pub(crate) fn heat(&self) -> PanTilt<f32> {
+        PanTilt::from_fn(|j| self.motors[j].heat())
+    }
+
+    /// Motors are as hot as they are, whatever controls them.
+    pub(crate) fn set_heat(&mut self, heat: PanTilt<f32>) {
+        Joint::BOTH.iter().for_each(|&j| self.motors[j].set_heat(heat[j]));
+    }
+
     /// Begins anew after a fault.
     pub(crate) fn rearm(&mut self, config: &Config, sensed: &Sensed, estimates: &PanTilt<Estimate>) {
         self.encoders = encoders(sensed, estimates);

@@ -43,6 +43,14 @@ impl MotorWatch {
         }
     }
 
+    pub(super) const fn heat(&self) -> f32 {
+        self.heat
+    }
+
+    pub(super) const fn set_heat(&mut self, heat: f32) {
+        self.heat = heat;
+    }
+
     /// A motor stays as hot as it is, whoever arms.
     pub(super) fn rearm(&mut self) {
         self.saturated_ticks = 0;

@@ -1,7 +1,7 @@
 //! Numbers to and from bytes, little endian.
 
 /// Most bytes of a packet's body.
-pub const MOST_BODY: usize = 240;
+pub const MOST_BODY: usize = 248;
 
 /// The body of a packet as it is written. What does not fit is left out, and then the whole is not sent.
 #[derive(Clone, Copy, Debug)]

@@ -87,7 +87,7 @@ impl Reset {
 }
 
 /// A configuration that is in force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Configured {
     /// Its [checksum](super::crc32).
     pub crc: u32,
@@ -97,6 +97,8 @@ pub struct Configured {
     pub law: u32,
     /// Counts at which the head was told to stand, before the first tick, if it kept its homing.
     pub home: Option<PanTilt<i32>>,
+    /// Heat of the motors, of a head that another configuration drove before; where that lit is not known.
+    pub heat: Option<PanTilt<f32>>,
 }
 
 /// Why a configuration is not in force.
@@ -126,6 +128,10 @@ pub struct Rows<'a> {
     pub wanted: u16,
     /// Segments that there is room for.
     pub free: u16,
+    /// Number of the last Disarm that acted.
+    pub disarm: u16,
+    /// How many faults were latched since power-up: what an Arm acknowledges.
+    pub fault_number: u32,
     /// How many rows.
     pub count: u8,
     /// Their bytes, one after the other.
@@ -145,7 +151,8 @@ impl<'a> Rows<'a> {
 
     /// As the body of a packet: as many rows from the first on as fit, and how many those are.
     pub fn body<'r>(
-        (first_tick, wanted, free): (u32, u16, u16),
+        connection: u8,
+        header: &RowsHeader,
         rows: impl IntoIterator<Item = &'r RowBytes> + Clone,
     ) -> (Body, u8) {
         let (mut count, mut length) = (0, HEAD);
@@ -156,19 +163,37 @@ impl<'a> Rows<'a> {
             }
             count += 1;
         }
+        let RowsHeader { first_tick, wanted, free, disarm, fault_number } = *header;
         let mut body = Body::new();
-        head(&mut body, kind::ROWS, 0);
+        head(&mut body, kind::ROWS, connection, 0);
         body.u32(first_tick);
         body.u16(wanted);
         body.u16(free);
+        body.u16(disarm);
+        body.u32(fault_number);
         body.u8(count);
         rows.into_iter().take(count.into()).for_each(|row| body.slice(row.bytes()));
         (body, count)
     }
 }
 
+/// What rows begin with: see [`Rows`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RowsHeader {
+    /// Tick of the first one.
+    pub first_tick: u32,
+    /// Sequence number of the order that comes next.
+    pub wanted: u16,
+    /// Segments that there is room for.
+    pub free: u16,
+    /// Number of the last Disarm that acted.
+    pub disarm: u16,
+    /// How many faults were latched since power-up.
+    pub fault_number: u32,
+}
+
 /// Bytes before the first row.
-const HEAD: usize = 13;
+const HEAD: usize = 19;
 
 mod kind {
     pub(super) const HELLO: u8 = 0x81;
@@ -180,9 +205,10 @@ mod kind {
 }
 
 impl<'a> FromBoard<'a> {
-    /// As the body of a packet.
-    pub fn body(&self) -> Body {
+    /// As the body of a packet of a connection.
+    pub fn body(&self, connection: u8) -> Body {
         let mut body = Body::new();
+        let head = |body: &mut Body, kind: u8, sequence: u16| head(body, kind, connection, sequence);
         match self {
             Self::Hello(greeting) => greeting.write(&mut body),
             Self::Configured(Ok(configured)) => {
@@ -205,10 +231,15 @@ impl<'a> FromBoard<'a> {
                 body.u32(rows.first_tick);
                 body.u16(rows.wanted);
                 body.u16(rows.free);
+                body.u16(rows.disarm);
+                body.u32(rows.fault_number);
                 body.u8(rows.count);
                 body.slice(rows.bytes);
             }
-            Self::Fault(record) => write_fault(record, &mut body),
+            Self::Fault(record) => {
+                head(&mut body, kind::FAULT, 0);
+                write_fault(record, &mut body);
+            }
             Self::Log(text) => {
                 head(&mut body, kind::LOG, 0);
                 body.slice(text.as_bytes());
@@ -217,10 +248,10 @@ impl<'a> FromBoard<'a> {
         body
     }
 
-    /// What a body says; `None` if that is nothing that is known, or anything about it is not as it should be.
-    pub fn read(body: &'a [u8]) -> Option<Self> {
+    /// What a body says, and in which connection; `None` if that is nothing that is known, or anything about it is not as it should be.
+    pub fn read(body: &'a [u8]) -> Option<(Self, u8)> {
         let mut rest = Rest(body);
-        let (kind, flags, sequence) = (rest.u8()?, rest.u8()?, rest.u16()?);
+        let (kind, connection, sequence) = (rest.u8()?, rest.u8()?, rest.u16()?);
         let said = match kind {
             kind::HELLO => Self::Hello(Greeting::read(&mut rest)?),
             kind::CONFIGURED => Self::Configured(match rest.u8()? {
@@ -230,20 +261,25 @@ impl<'a> FromBoard<'a> {
             kind::PONG => Self::Pong { host_us: rest.u64()?, tick: rest.u32()?, tick_us: rest.u16()? },
             kind::ROWS => {
                 let (first_tick, wanted) = (rest.u32()?, rest.u16()?);
-                let (free, count) = (rest.u16()?, rest.u8()?);
-                Self::Rows(Rows { first_tick, wanted, free, count, bytes: rest.all() })
+                let (free, disarm) = (rest.u16()?, rest.u16()?);
+                let (fault_number, count) = (rest.u32()?, rest.u8()?);
+                let bytes = rest.all();
+                if RowBytes::count_in(bytes) != Some(count.into()) {
+                    return None;
+                }
+                Self::Rows(Rows { first_tick, wanted, free, disarm, fault_number, count, bytes })
             }
             kind::FAULT => Self::Fault(read_fault(&mut rest)?),
             kind::LOG => Self::Log(core::str::from_utf8(rest.all()).ok()?),
             _ => return None,
         };
-        (rest.is_empty() && flags == 0 && sequence == 0).then_some(said)
+        (rest.is_empty() && sequence == 0).then_some((said, connection))
     }
 }
 
 impl Greeting {
     fn write(&self, body: &mut Body) {
-        head(body, kind::HELLO, 0);
+        head(body, kind::HELLO, 0, 0);
         body.slice(&MAGIC);
         body.u8(self.version.0);
         body.u8(self.version.1);
@@ -302,12 +338,17 @@ impl Configured {
         let home = self.home.unwrap_or_default();
         body.i32(home.pan);
         body.i32(home.tilt);
+        body.u8(u8::from(self.heat.is_some()));
+        let heat = self.heat.unwrap_or_default();
+        body.f32(heat.pan);
+        body.f32(heat.tilt);
     }
 
     fn read(rest: &mut Rest<'_>) -> Option<Self> {
         let (crc, tick, law, keeps) = (rest.u32()?, rest.u32()?, rest.u32()?, rest.flag()?);
         let home = PanTilt { pan: rest.i32()?, tilt: rest.i32()? };
-        Some(Self { crc, tick, law, home: keeps.then_some(home) })
+        let (is_hot, heat) = (rest.flag()?, PanTilt { pan: rest.f32()?, tilt: rest.f32()? });
+        Some(Self { crc, tick, law, home: keeps.then_some(home), heat: is_hot.then_some(heat) })
     }
 }
 
@@ -337,7 +378,6 @@ impl WrongConfiguration {
 }
 
 fn write_fault(record: &FaultRecord, body: &mut Body) {
-    head(body, kind::FAULT, 0);
     body.u32(record.number);
     body.u8(record.fault.number());
     body.u8(match record.joint {

@@ -22,7 +22,7 @@ mod to_board;
 
 pub use bytes::{Body, MOST_BODY};
 pub use crc::crc32;
-pub use from_board::{Configured, FromBoard, Greeting, Reset, Rows, WrongConfiguration};
+pub use from_board::{Configured, FromBoard, Greeting, Reset, Rows, RowsHeader, WrongConfiguration};
 pub use packet::{MOST_PACKET, Packets, packed};
 pub use row::{Row, RowBytes, as_told};
 pub use to_board::{Ask, Order, ToBoard};
@@ -41,9 +41,14 @@ pub const fn is_before(number: u16, other: u16) -> bool {
     number.wrapping_sub(other) >= 1 << 15
 }
 
-/// First bytes of a body: kind, flags (none yet), sequence number.
-fn head(body: &mut Body, kind: u8, sequence: u16) {
+/// First bytes of a body: kind, connection, sequence number.
+fn head(body: &mut Body, kind: u8, connection: u8, sequence: u16) {
     body.u8(kind);
-    body.u8(0);
+    body.u8(connection);
     body.u16(sequence);
+}
+
+/// The byte by which packets of a connection are known: the last of its [number](ToBoard::Hello). A greeting has 0, its number is within.
+pub const fn connection_of(session: u32) -> u8 {
+    session.to_le_bytes()[0]
 }

@@ -108,15 +108,30 @@ impl RowBytes {
     /// Of no row.
     pub const NONE: Self = Self([0; MOST_BYTES]);
 
+    /// How many rows these bytes are; `None` if they end within one.
+    pub(super) fn count_in(mut bytes: &[u8]) -> Option<usize> {
+        let mut count = 0;
+        while !bytes.is_empty() {
+            let length = if has_foot(bytes) { MOST_BYTES } else { BYTES };
+            bytes = bytes.get(length..)?;
+            count += 1;
+        }
+        Some(count)
+    }
+
     /// Its bytes.
     pub fn bytes(&self) -> &[u8] {
-        /// The upper byte of its bits.
-        const AT: usize = 27;
         let Self(bytes) = self;
-        let has_foot = bytes.get(AT).is_some_and(|&byte| u16::from(byte) << 8 & bit::FOOT != 0);
         let (without, _) = bytes.split_at_checked(BYTES).unwrap_or_default();
-        if has_foot { bytes } else { without }
+        if has_foot(bytes) { bytes } else { without }
     }
+}
+
+/// Whether a row that begins with these bytes has a gyroscope's rates.
+fn has_foot(bytes: &[u8]) -> bool {
+    /// The upper byte of its bits.
+    const AT: usize = 27;
+    bytes.get(AT).is_some_and(|&byte| u16::from(byte) << 8 & bit::FOOT != 0)
 }
 
 impl Row {

@@ -16,14 +16,14 @@ pub enum ToBoard<'a> {
         /// Its program's version, ended by zeros.
         program: [u8; 8],
     },
-    /// A piece of the configuration, from this byte on. Taken while disarmed.
+    /// A piece of the configuration, from this byte on.
     Configure {
         /// Place of the first byte.
         offset: u16,
         /// At most 200 of them.
         bytes: &'a [u8],
     },
-    /// All of the configuration was sent: it is in force from now on, the controller begins anew, dark.
+    /// All of the configuration was sent: it is in force from now on, the controller begins anew, dark. Refused while it is armed.
     Commit {
         /// Bytes of it.
         length: u16,
@@ -41,6 +41,8 @@ pub enum ToBoard<'a> {
     Disarm {
         /// Number of the command that the host sends next.
         before: u16,
+        /// Number of this Disarm, one more than that of the one before it: rows say which was the last that acted.
+        number: u16,
     },
     /// Asks for rows again.
     Again {
@@ -99,6 +101,7 @@ mod kind {
     pub(super) const SPEED: u8 = 0x16;
     pub(super) const PAUSE: u8 = 0x17;
     pub(super) const ABANDON: u8 = 0x18;
+    pub(super) const ACKNOWLEDGE: u8 = 0x19;
     pub(super) const KEEP_ALIVE: u8 = 0x20;
     pub(super) const DISARM: u8 = 0x21;
     pub(super) const AGAIN: u8 = 0x23;
@@ -106,12 +109,13 @@ mod kind {
 }
 
 impl<'a> ToBoard<'a> {
-    /// As the body of a packet.
-    pub fn body(&self) -> Body {
+    /// As the body of a packet of a connection.
+    pub fn body(&self, connection: u8) -> Body {
         let mut body = Body::new();
+        let head = |body: &mut Body, kind: u8, sequence: u16| head(body, kind, connection, sequence);
         match *self {
             Self::Hello { version: (major, minor), session, program } => {
-                head(&mut body, kind::HELLO, 0);
+                super::head(&mut body, kind::HELLO, 0, 0);
                 body.slice(&MAGIC);
                 body.u8(major);
                 body.u8(minor);
@@ -128,12 +132,15 @@ impl<'a> ToBoard<'a> {
                 body.u16(length);
                 body.u32(crc);
             }
-            Self::Order(order) => order.write(&mut body),
+            Self::Order(order) => order.write(&mut body, connection),
             Self::KeepAlive { host_us } => {
                 head(&mut body, kind::KEEP_ALIVE, 0);
                 body.u64(host_us);
             }
-            Self::Disarm { before } => head(&mut body, kind::DISARM, before),
+            Self::Disarm { before, number } => {
+                head(&mut body, kind::DISARM, before);
+                body.u16(number);
+            }
             Self::Again { from, count } => {
                 head(&mut body, kind::AGAIN, 0);
                 body.u32(from);
@@ -147,10 +154,10 @@ impl<'a> ToBoard<'a> {
         body
     }
 
-    /// What a body says; `None` if that is nothing that is known, or anything about it is not as it should be.
-    pub fn read(body: &'a [u8]) -> Option<Self> {
+    /// What a body says, and in which connection; `None` if that is nothing that is known, or anything about it is not as it should be.
+    pub fn read(body: &'a [u8]) -> Option<(Self, u8)> {
         let mut rest = Rest(body);
-        let (kind, flags, sequence) = (rest.u8()?, rest.u8()?, rest.u16()?);
+        let (kind, connection, sequence) = (rest.u8()?, rest.u8()?, rest.u16()?);
         let said = match kind {
             kind::HELLO => {
                 let magic: [u8; 4] = rest.bytes()?;
@@ -163,19 +170,19 @@ impl<'a> ToBoard<'a> {
             kind::CONFIGURE => Self::Configure { offset: rest.u16()?, bytes: rest.all() },
             kind::COMMIT => Self::Commit { length: rest.u16()?, crc: rest.u32()? },
             kind::KEEP_ALIVE => Self::KeepAlive { host_us: rest.u64()? },
-            kind::DISARM => Self::Disarm { before: sequence },
+            kind::DISARM => Self::Disarm { before: sequence, number: rest.u16()? },
             kind::AGAIN => Self::Again { from: rest.u32()?, count: rest.u16()? },
             kind::SEEN => Self::Seen { number: rest.u32()? },
             _ => Self::Order(Order { sequence, ask: ask(kind, &mut rest)? }),
         };
         let numbered = matches!(said, Self::Order(_) | Self::Disarm { .. });
-        (rest.is_empty() && flags == 0 && (numbered || sequence == 0)).then_some(said)
+        (rest.is_empty() && (numbered || sequence == 0)).then_some((said, connection))
     }
 }
 
 impl Order {
-    fn write(&self, body: &mut Body) {
-        let mut begin = |kind: u8| head(body, kind, self.sequence);
+    fn write(&self, body: &mut Body, connection: u8) {
+        let mut begin = |kind: u8| head(body, kind, connection, self.sequence);
         match self.ask {
             Ask::Arm { nonce, acknowledges } => {
                 begin(kind::ARM);
@@ -203,6 +210,10 @@ impl Order {
             }
             Ask::Command(Command::Pause) => begin(kind::PAUSE),
             Ask::Command(Command::Abandon) => begin(kind::ABANDON),
+            Ask::Command(Command::Acknowledge { fault }) => {
+                begin(kind::ACKNOWLEDGE);
+                body.u32(fault);
+            }
             // these have packets of their own
             Ask::Command(Command::Arm { .. } | Command::Disarm | Command::KeepAlive) => {}
         }
@@ -220,6 +231,7 @@ fn ask(kind: u8, rest: &mut Rest<'_>) -> Option<Ask> {
         kind::SPEED => Command::Speed(rest.f32()?),
         kind::PAUSE => Command::Pause,
         kind::ABANDON => Command::Abandon,
+        kind::ACKNOWLEDGE => Command::Acknowledge { fault: rest.u32()? },
         _ => return None,
     };
     Some(Ask::Command(command))

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use tracelight_device::{Host, Stage};
+use tracelight_device::Host;
 use tracelight_rig::{Actuation, Capabilities, TICK_F64_S};
 
 use super::{Brain, SimulatedRig, Tick};
@@ -35,7 +35,7 @@ impl SimulatedRig {
         };
         let wired = Wired::new(*brain.0.config(), capabilities, link, seed);
         self.brain = Brain::Wired(Box::new(wired), VecDeque::new());
-        while self.host().is_some_and(|host| host.stage() != Stage::Running) {
+        while matches!(&self.brain, Brain::Wired(wired, _) if !wired.is_over()) {
             self.pass_wired();
         }
         self

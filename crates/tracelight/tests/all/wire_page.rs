@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use tracelight_rig::wire::{
-    Ask, Configured, FromBoard, Greeting, MOST_PACKET, Order, Packets, Reset, Row, RowBytes, Rows, ToBoard,
-    VERSION, WrongConfiguration, as_told, packed,
+    Ask, Configured, FromBoard, Greeting, MOST_PACKET, Order, Packets, Reset, Row, RowBytes, Rows,
+    RowsHeader, ToBoard, VERSION, WrongConfiguration, as_told, packed,
 };
 use tracelight_rig::{
     Actuation, Capabilities, Command, Darkness, DarknessSet, Exceeded, Fault, FaultRecord, Input, InputState,
@@ -12,6 +12,10 @@ use tracelight_rig::{
 };
 
 use crate::support;
+
+/// The last byte of the connection's number.
+const CONNECTION: u8 = 7;
+const HEADER: RowsHeader = RowsHeader { first_tick: 65, wanted: 2, free: 380, disarm: 0, fault_number: 0 };
 
 /// The inputs of the rig of the examples.
 fn inputs() -> Inputs {
@@ -42,8 +46,9 @@ fn to_board() -> Vec<(&'static str, ToBoard<'static>)> {
         ("Speed", command(6, Command::Speed(0.5))),
         ("Pause", command(7, Command::Pause)),
         ("Abandon", command(8, Command::Abandon)),
+        ("Acknowledge", command(9, Command::Acknowledge { fault: 1 })),
         ("Keep-alive", ToBoard::KeepAlive { host_us: 1_000_000 }),
-        ("Disarm", ToBoard::Disarm { before: 9 }),
+        ("Disarm", ToBoard::Disarm { before: 10, number: 1 }),
         ("Again", ToBoard::Again { from: 65, count: 7 }),
         ("Seen", ToBoard::Seen { number: 1 }),
     ]
@@ -68,7 +73,7 @@ fn from_board() -> Vec<(&'static str, FromBoard<'static>)> {
         tick: 60,
         nonce: 2,
     };
-    let configured = Configured { crc: 0x1234_5678, tick: 61, law: 0x0BAD_CAFE, home: None };
+    let configured = Configured { crc: 0x1234_5678, tick: 61, law: 0x0BAD_CAFE, home: None, heat: None };
     let record = FaultRecord {
         fault: Fault::EncoderJumped,
         number: 1,
@@ -142,10 +147,13 @@ fn bodies(digits: &str) -> Vec<Vec<u8>> {
 
 fn examples() -> Vec<(String, String)> {
     let told = rows().map(|row| row.told());
-    let (body, _) = Rows::body((65, 2, 380), &told);
-    let to = to_board().into_iter().map(|(name, said)| (format!("host: {name}"), hex(said.body().bytes())));
-    let from =
-        from_board().into_iter().map(|(name, said)| (format!("board: {name}"), hex(said.body().bytes())));
+    let (body, _) = Rows::body(CONNECTION, &HEADER, &told);
+    let to = to_board()
+        .into_iter()
+        .map(|(name, said)| (format!("host: {name}"), hex(said.body(CONNECTION).bytes())));
+    let from = from_board()
+        .into_iter()
+        .map(|(name, said)| (format!("board: {name}"), hex(said.body(CONNECTION).bytes())));
     to.chain(from).chain([("board: Rows".to_owned(), hex(body.bytes()))]).collect()
 }
 
@@ -180,15 +188,17 @@ fn every_frame_on_the_page_is_read_as_what_it_says() {
         assert_eq!(bodies.len(), 1, "{name}");
         if let Some(name) = name.strip_prefix("host: ") {
             let said = to.iter().find(|(of, _)| *of == name).unwrap().1;
-            assert_eq!(ToBoard::read(&bodies[0]), Some(said), "{name}");
+            assert_eq!(ToBoard::read(&bodies[0]).map(|(said, _)| said), Some(said), "{name}");
         } else if name == "board: Rows" {
-            let Some(FromBoard::Rows(read)) = FromBoard::read(&bodies[0]) else { panic!("no rows") };
+            let Some((FromBoard::Rows(read), CONNECTION)) = FromBoard::read(&bodies[0]) else {
+                panic!("no rows")
+            };
             assert_eq!((read.first_tick, read.wanted, read.free), (65, 2, 380));
             assert!(read.rows(inputs()).eq((65..).zip(rows())));
             assert_eq!(rows().map(|row| row.told()).map(|told: RowBytes| told.bytes().len()), [32, 32]);
         } else {
             let said = from.iter().find(|(of, _)| Some(*of) == name.strip_prefix("board: ")).unwrap().1;
-            assert_eq!(FromBoard::read(&bodies[0]), Some(said), "{name}");
+            assert_eq!(FromBoard::read(&bodies[0]).map(|(said, _)| said), Some(said), "{name}");
         }
     }
 }
