@@ -372,8 +372,8 @@ faults! {
     LinkLost = 28 {
         what: "The connection to the board is gone, or rows of it are lost for good.",
         code: "link-lost",
-        seen: "the board does not answer for three seconds, or can not tell again what was lost",
-        soon: Soon::Words("dark after control.host_silence, a fault after 3 s"),
+        seen: "the board does not answer for ten seconds, or cannot tell again what was lost",
+        soon: Soon::Words("dark after control.host_silence, a fault after 10 s"),
         measure: Measure::NONE,
         motors: Motors::Held,
         loses_counts: true,

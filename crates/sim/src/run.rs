@@ -83,7 +83,7 @@ enum Brain {
     /// The controller itself.
     Here(Box<(Controller, State)>),
     /// A board, by a wire; the truth of the ticks that its host does not know of yet.
-    Wired(Box<Wired>, VecDeque<Tick>),
+    Wired(Box<Wired>, VecDeque<(u32, Tick)>),
 }
 
 /// A controller with a simulated head, in this process.
@@ -299,6 +299,7 @@ impl SimulatedRig {
             Trouble::EnableStuck => self.plant.stick_enable(),
             Trouble::PowerLoss => self.power_up(),
             Trouble::Input(input, state) => self.plant.set_input(input, state),
+            Trouble::HostKilled(ms) => self.wired(|wired| wired.kill_host(ms)),
             Trouble::HostStall(ms) => self.wired(|wired| wired.stall(ms)),
             Trouble::BitFlip(word, bit) => self.wired(|wired| wired.spoil(word, bit)),
             Trouble::Unplug(ms) => self.wired(|wired| wired.unplug(ms)),

@@ -40,6 +40,8 @@ pub enum Trouble {
     Input(Input, InputState),
     /// The host of a board behind a wire hangs for so many ms.
     HostStall(u32),
+    /// The host of a board behind a wire is killed; another one begins so many ms later, and configures the board anew.
+    HostKilled(u32),
     /// Somebody pulls the cable to the board, and puts it in again after so many ms.
     Unplug(u32),
     /// A bit of the configuration of a board behind a wire is another one: word and bit.

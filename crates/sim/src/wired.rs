@@ -120,6 +120,13 @@ impl Wired {
         self.board.spoil(word, bit);
     }
 
+    /// The host is gone, and another one comes after so long.
+    pub(crate) fn kill_host(&mut self, ms: u32) {
+        self.sessions += 1;
+        self.host = Host::new(self.config, self.sessions);
+        self.stall(ms);
+    }
+
     /// Somebody pulls the cable, and puts it in again after so long.
     pub(crate) fn unplug(&mut self, ms: u32) {
         self.unplugged_until_us = Some(self.now_us + u64::from(ms) * TICK_US);

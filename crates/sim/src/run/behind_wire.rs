@@ -56,9 +56,13 @@ impl SimulatedRig {
             if !wired.is_stalled()
                 && let Some(telemetry) = wired.next()
             {
-                let truth = unseen.pop_front();
+                // ticks of which no host will ever know are before those of which one knows
+                let mut seen = unseen.pop_front();
+                while seen.is_some_and(|(tick, _)| tick != telemetry.tick) {
+                    seen = unseen.pop_front();
+                }
                 self.told = telemetry;
-                let truth = truth.unwrap_or_else(|| self.truth());
+                let truth = seen.map_or_else(|| self.truth(), |(_, truth)| truth);
                 return Tick { asked: self.asked(&telemetry), telemetry, ..truth };
             }
             let failed = wired.failed(&self.told);
@@ -84,7 +88,7 @@ impl SimulatedRig {
                 board.machine().state().map(|state| (*state.told(), *state.home())).unwrap_or_default(),
             );
         });
-        unseen.push_back(truth);
+        unseen.push_back((wired.board().machine().tick_number().wrapping_sub(1), truth));
         let (actuation, open_loop) = done;
         self.exchange(&actuation, &open_loop);
     }

@@ -217,3 +217,127 @@ fn a_bit_of_the_boards_configuration_that_turns_is_seen_and_it_is_dark() {
     println!("of 400 bits {seen} seen, {without_effect} without effect");
     assert!(seen > 60, "{seen}");
 }
+
+/// Where a light's switch may still be closing after a Disarm was asked: on its way there and back, lost now and then, and repeated every 5 ms.
+const DISARMED_TICKS: u32 = 150;
+
+/// Somebody arms, disarms and asks for dots as he likes, through a wire that loses, delays and is pulled: some time after he disarmed it is dark until he arms again.
+#[test]
+fn whatever_becomes_of_the_wire_nothing_is_lit_after_a_disarm() {
+    let config = RigConfig::report();
+    let plan = plan_of_all(&config, house());
+    let (mut disarms, mut lit) = (0, 0);
+    for seed in 0..30 {
+        let mut dice = Dice::of_seed(1000 + u128::from(seed));
+        let link = LinkSettings {
+            loss: 0.15 * f64::from(dice.below(3) as u32),
+            corrupt: 0.02,
+            delay_ms: dice.below(15) as f64,
+            jitter_ms: dice.below(15) as f64,
+        };
+        let mut rig = wired(&config, link, seed);
+        let mut feeder = Feeder::new(plan.segments.as_slice(), false);
+        // ticks since he disarmed; none while he may have light
+        let (mut disarmed, mut ticks) = (None::<u32>, 0);
+        while ticks < 15_000 && matches!(rig.host().unwrap().stage(), Stage::Running | Stage::Greeting) {
+            ticks += 1;
+            rig.send(Command::KeepAlive).unwrap();
+            match dice.below(2500) {
+                0..3 => {
+                    rig.send(Command::Disarm).unwrap();
+                    disarmed = disarmed.or(Some(0));
+                    disarms += 1;
+                }
+                3..6 if arm(&mut rig) => disarmed = None,
+                6 if rig.send(Command::Point(300)).is_ok() => disarmed = None,
+                7 => {
+                    // both in a tick, and once more
+                    if arm(&mut rig) {
+                        disarmed = Some(0);
+                    }
+                    rig.send(Command::Disarm).unwrap();
+                }
+                8 if dice.one_in(3) => rig.suffer(Trouble::Unplug(1 + dice.below(120) as u32)),
+                9 => rig.suffer(Trouble::HostStall(1 + dice.below(30) as u32)),
+                _ => {}
+            }
+            feeder.feed(&mut rig);
+            let tick = rig.step();
+            disarmed = disarmed.map(|since| since + 1);
+            let is_lit = tick.telemetry.actuation.lights();
+            lit += usize::from(is_lit);
+            let since = disarmed.unwrap_or(0);
+            assert!(
+                !is_lit || since <= DISARMED_TICKS,
+                "seed {seed}, {link:?}: lit {since} ticks after it was disarmed"
+            );
+        }
+        if let Stage::Failed(trouble) = rig.host().unwrap().stage() {
+            panic!("seed {seed}, {link:?}: {trouble}");
+        }
+    }
+    println!("{disarms} Disarms, {lit} lit ticks");
+    assert!(disarms > 300 && lit > 20_000, "{disarms} {lit}");
+}
+
+/// A host that is killed at any moment leaves a head that is dark within 51 ms; one that begins anew finds it homed where it stands, with motors as hot as they were
+/// and a light budget that is spent, and draws again.
+#[test]
+fn a_host_that_is_killed_leaves_it_dark_and_the_next_one_draws_again() {
+    /// A budget that is spent is whole again after ten times what it is.
+    const RECOVERY_TICKS: u32 = 10_500;
+    let config = RigConfig::report();
+    let plan = plan_of(&config, star(0.2));
+    let before = ink(&plan, &to_the_end(&mut here(&config, 1), &plan));
+    let mut dice = Dice::of_seed(12);
+    for seed in 0..25 {
+        let when = 100 + dice.below(plan.points.len() - 200) as u32;
+        let mut rig = wired(&config, GOOD, seed);
+        let mut feeder = Feeder::new(plan.segments.as_slice(), false);
+        assert!(arm(&mut rig));
+        for _ in 0..when {
+            rig.send(Command::KeepAlive).unwrap();
+            feeder.feed(&mut rig);
+            rig.step();
+        }
+        let hot = rig.told().actuation.command_v;
+        rig.suffer(Trouble::HostKilled(1 + dice.below(2500) as u32));
+        let first = rig.step();
+        let told = first.telemetry;
+        assert!(told.homed && told.phase == Phase::Dark, "{when}: {:?} {}", told.phase, told.homed);
+        assert!(hot != told.actuation.command_v || when < 200);
+        rig.send(Command::Abandon).unwrap();
+        for _ in 0..RECOVERY_TICKS {
+            rig.send(Command::KeepAlive).unwrap();
+            assert!(!rig.step().light, "{when}");
+        }
+        let ran = drawn(&mut rig, &plan, |_, _| {});
+        check_ink(&format!("killed at {when}"), &ran, &plan, &before);
+    }
+}
+
+/// What has stood does not stand anew because somebody began anew.
+#[test]
+fn a_dot_does_not_stand_longer_for_a_host_that_begins_again_and_again() {
+    let mut rig =
+        SimulatedRig::unhomed(&RigConfig::report(), POSE, Default::default(), 3).behind_wire(GOOD, 3);
+    let lit = |rig: &mut SimulatedRig, ticks: u32| {
+        let mut lit = 0;
+        for tick in 0..ticks {
+            rig.send(Command::KeepAlive).unwrap();
+            if tick == ticks.saturating_sub(1300) {
+                rig.send(Command::Point(1000)).unwrap();
+            }
+            lit += u32::from(rig.step().telemetry.actuation.lights());
+        }
+        lit
+    };
+    let first = lit(&mut rig, 1500);
+    assert!((900..=1000).contains(&first), "{first} ticks of light");
+    for _ in 0..5 {
+        rig.suffer(Trouble::HostKilled(20));
+        assert_eq!(lit(&mut rig, 1500), 0, "a second in any ten seconds");
+    }
+    let later = lit(&mut rig, 12_000);
+    assert!((900..=1000).contains(&later), "{later} ticks of light after ten dark seconds");
+}
