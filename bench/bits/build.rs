@@ -14,6 +14,8 @@ fn main() {
     let out = PathBuf::from(std::env::var_os("OUT_DIR").unwrap());
     std::fs::write(out.join("memory.x"), MEMORY).unwrap();
     println!("cargo:rustc-link-search={}", out.display());
-    println!("cargo:rustc-link-arg-bin=board=--nmagic");
-    println!("cargo:rustc-link-arg-bin=board=-Tlink.x");
+    for board in ["board", "wired"] {
+        println!("cargo:rustc-link-arg-bin={board}=--nmagic");
+        println!("cargo:rustc-link-arg-bin={board}=-Tlink.x");
+    }
 }

@@ -1,6 +1,6 @@
 use tracelight_control::{
-    AxisConfig, Config, Creep, Drive, Feedback, Feedforward, FrictionModel, HeadModel, KalmanTuning, LawConfig,
-    Foot, MotorRating, ObserverConfig, Quirks, StateFeedback,
+    AxisConfig, Config, Creep, Drive, Feedback, Feedforward, Foot, FrictionModel, HeadModel, KalmanTuning,
+    LawConfig, MotorRating, ObserverConfig, Quirks, StateFeedback,
 };
 use tracelight_rig::{JointLimits, PanTilt};
 

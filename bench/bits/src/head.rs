@@ -26,8 +26,10 @@ pub(crate) struct Head {
 
 impl Head {
     pub(crate) fn sensed(&self) -> Sensed {
-        let read =
-            |j: Joint| Measurement { count: count(self.angle_rad[j]) - self.lost, edge_age_ticks: self.edge_age[j] };
+        let read = |j: Joint| Measurement {
+            count: count(self.angle_rad[j]) - self.lost,
+            edge_age_ticks: self.edge_age[j],
+        };
         Sensed { encoders: PanTilt::from_fn(read), ..Sensed::default() }
     }
 

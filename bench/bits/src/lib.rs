@@ -9,8 +9,10 @@
 mod config;
 mod head;
 mod strokes;
+mod wired;
 
 pub use config::report;
+pub use wired::{Firmware, IDENTITY, run_wired};
 
 use head::Head;
 use strokes::Strokes;
@@ -19,6 +21,8 @@ use tracelight_rig::{Command, Fault, PanTilt, Phase, Telemetry};
 
 /// Ticks that are hashed.
 pub const TICKS: u32 = 100_000;
+/// Ticks of a board behind a wire that are hashed.
+pub const WIRED_TICKS: u32 = 20_000;
 
 /// How often both encoders lose a count of a dear run, ticks.
 const LOSES_EVERY: u32 = 1500;
@@ -145,7 +149,11 @@ impl Fnv {
     }
 
     fn word(&mut self, word: u32) {
-        for byte in word.to_le_bytes() {
+        self.bytes(&word.to_le_bytes());
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         }
     }

@@ -1,7 +1,10 @@
-//! Prints the hash as this machine computes it.
+//! Prints the hashes as this machine computes them: of the controller, and of all that a board says.
 
 #![allow(clippy::print_stdout, reason = "that is what it is for")]
 
+use tracelight_bench_bits::{Firmware, IDENTITY, TICKS, WIRED_TICKS, run, run_wired};
+
 fn main() {
-    println!("{:016x}", tracelight_bench_bits::run(tracelight_bench_bits::TICKS).hash);
+    let mut board = Box::new(Firmware::new(IDENTITY));
+    println!("{:016x} {:016x}", run(TICKS).hash, run_wired(&mut board, WIRED_TICKS, &mut ()));
 }
