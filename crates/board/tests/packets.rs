@@ -100,7 +100,8 @@ fn segment(number: u32) -> Segment {
     let from = if number.is_multiple_of(2) { 0.0 } else { way };
     let sign = if number.is_multiple_of(2) { way } else { -way };
     let n: f32 = 25.0;
-    let quintic = [from, 0.0, 0.0, 10.0 * sign / n.powi(3), -15.0 * sign / n.powi(4), 6.0 * sign / n.powi(5)];
+    let n3 = n * n * n;
+    let quintic = [from, 0.0, 0.0, 10.0 * sign / n3, -15.0 * sign / (n3 * n), 6.0 * sign / (n3 * n * n)];
     Segment {
         start_tick: 25 * number,
         ticks: 25,

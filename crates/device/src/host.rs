@@ -3,13 +3,15 @@ use std::collections::{BTreeMap, VecDeque};
 use tracelight_board::{MOST_CONFIGURATION, law_hash, write_configuration};
 use tracelight_control::{Carried, Config};
 use tracelight_rig::wire::{
-    Ask, Configured, FromBoard, Greeting, MOST_PACKET, Packets, Rows, ToBoard, VERSION,
-    WrongConfiguration as Wrong, connection_of, crc32, packed,
+    Ask, Configured, FromBoard, Greeting, Packets, Rows, ToBoard, VERSION, WrongConfiguration as Wrong,
+    connection_of, crc32,
 };
 use tracelight_rig::{Command, Telemetry};
 
 use crate::clock::Clock;
+use crate::line::Line;
 use crate::outbox::Outbox;
+use crate::times::{Times, is_due};
 use crate::trouble::Trouble;
 use crate::twin::{MOST_SEGMENTS, Start, Twin};
 
@@ -82,31 +84,6 @@ pub struct Host {
     remarks: VecDeque<String>,
     clock: Clock,
     times: Times,
-}
-
-/// When something was done last, µs.
-#[derive(Clone, Copy, Debug, Default)]
-struct Times {
-    /// Something came.
-    heard: Option<u64>,
-    greeted: Option<u64>,
-    configured: Option<u64>,
-    /// Whoever drives it said that he is there.
-    said: Option<u64>,
-    alive: Option<u64>,
-    disarmed: Option<u64>,
-    asked: Option<u64>,
-    /// Rows are missing since then.
-    missing: Option<u64>,
-}
-
-/// Whether something is due that is to be done every so often.
-fn is_due(last: &mut Option<u64>, now_us: u64, every_us: u64) -> bool {
-    let due = last.is_none_or(|last| now_us.saturating_sub(last) >= every_us);
-    if due {
-        *last = Some(now_us);
-    }
-    due
 }
 
 impl Host {
@@ -234,87 +211,97 @@ impl Host {
 
     /// What is to be sent now.
     pub fn give(&mut self, now_us: u64, out: &mut Vec<u8>) {
-        let mut packet = [0; MOST_PACKET];
-        let connection = connection_of(self.session);
-        let mut say = |said: ToBoard<'_>| {
-            let length = packed(said.body(connection).bytes(), &mut packet);
-            out.extend_from_slice(&packet[..length]);
-        };
+        let mut line = Line { connection: connection_of(self.session), out };
         match self.stage {
-            Stage::Greeting => {
-                let since = *self.times.heard.get_or_insert(now_us);
-                if now_us.saturating_sub(since) > MOST_SILENT_US {
-                    self.stage = Stage::Failed(Trouble::Silent { waited_us: now_us - since });
-                } else if is_due(&mut self.times.greeted, now_us, GREET_AGAIN_US) {
-                    let mut program = [0; 8];
-                    let version = env!("CARGO_PKG_VERSION").bytes();
-                    program.iter_mut().zip(version).for_each(|(place, byte)| *place = byte);
-                    say(ToBoard::Hello { version: VERSION, session: self.session, program });
-                }
-            }
-            Stage::Configuring => {
-                let since = *self.times.heard.get_or_insert(now_us);
-                if now_us.saturating_sub(since) > MOST_SILENT_US {
-                    self.stage = Stage::Failed(Trouble::Silent { waited_us: now_us - since });
-                } else if is_due(&mut self.times.configured, now_us, CONFIGURE_AGAIN_US) {
-                    for (number, bytes) in self.configuration.chunks(PIECE).enumerate() {
-                        // some kilobytes at most
-                        let offset = (number * PIECE) as u16;
-                        say(ToBoard::Configure { offset, bytes });
-                    }
-                    let (length, crc) = (self.configuration.len() as u16, crc32(&self.configuration));
-                    say(ToBoard::Commit { length, crc });
-                }
-            }
-            Stage::Running => {
-                if now_us.saturating_sub(*self.times.heard.get_or_insert(now_us)) > MOST_GONE_US {
-                    self.stage = Stage::Failed(Trouble::Silent { waited_us: MOST_GONE_US });
-                    return;
-                }
-                // before all: what was asked earlier and would let light out is void then, and what is asked later waits until it acted
-                if let Some(before) = self.disarm
-                    && is_due(&mut self.times.disarmed, now_us, DISARM_AGAIN_US)
-                {
-                    say(ToBoard::Disarm { before, number: self.disarms });
-                }
-                if core::mem::take(&mut self.is_alive) {
-                    self.times.said = Some(now_us);
-                }
-                let is_alive = self.times.said.is_some_and(|said| now_us.saturating_sub(said) <= ALIVE_US);
-                if is_alive && is_due(&mut self.times.alive, now_us, KEEP_ALIVE_US) {
-                    say(ToBoard::KeepAlive { host_us: now_us });
-                }
-                while self.begins_again.is_none()
-                    && let Some(order) = self.outbox.send(now_us, self.disarm)
-                {
-                    // nothing is lit for a host that was not heard before
-                    if order.ask.lights() && is_alive {
-                        self.times.alive = Some(now_us);
-                        say(ToBoard::KeepAlive { host_us: now_us });
-                    }
-                    say(ToBoard::Order(order));
-                }
-                if let Some((from, count)) = self.missing() {
-                    let since = *self.times.missing.get_or_insert(now_us);
-                    if is_due(&mut self.times.asked, now_us, ROWS_AGAIN_US) {
-                        say(ToBoard::Again { from, count });
-                    }
-                    if now_us.saturating_sub(since) > MOST_MISSING_US {
-                        let to = from.wrapping_add(count.into());
-                        self.stage = Stage::Failed(Trouble::LostRows { from, to });
-                    }
-                } else {
-                    self.times.missing = None;
-                }
-                if let Some(number) = self.seen.take() {
-                    say(ToBoard::Seen { number });
-                }
-            }
+            Stage::Greeting | Stage::Configuring => self.connect(now_us, &mut line),
+            Stage::Running => self.drive(now_us, &mut line),
             Stage::Failed(_) => {
                 if is_due(&mut self.times.disarmed, now_us, DISARM_AGAIN_US) {
-                    say(ToBoard::Disarm { before: self.outbox.next(), number: self.disarms });
+                    line.say(ToBoard::Disarm { before: self.outbox.next(), number: self.disarms });
                 }
             }
+        }
+    }
+
+    /// Fails if nothing came for so long; whether it did not.
+    fn is_heard(&mut self, now_us: u64, most_us: u64) -> bool {
+        let waited_us = now_us.saturating_sub(*self.times.heard.get_or_insert(now_us));
+        if waited_us > most_us {
+            self.stage = Stage::Failed(Trouble::Silent { waited_us });
+        }
+        waited_us <= most_us
+    }
+
+    /// Greets, and sends the configuration.
+    fn connect(&mut self, now_us: u64, line: &mut Line<'_>) {
+        if !self.is_heard(now_us, MOST_SILENT_US) {
+            return;
+        }
+        if self.stage == Stage::Greeting && is_due(&mut self.times.greeted, now_us, GREET_AGAIN_US) {
+            let mut program = [0; 8];
+            let version = env!("CARGO_PKG_VERSION").bytes();
+            program.iter_mut().zip(version).for_each(|(place, byte)| *place = byte);
+            line.say(ToBoard::Hello { version: VERSION, session: self.session, program });
+        }
+        if self.stage == Stage::Configuring && is_due(&mut self.times.configured, now_us, CONFIGURE_AGAIN_US)
+        {
+            for (number, bytes) in self.configuration.chunks(PIECE).enumerate() {
+                // some kilobytes at most
+                let offset = (number * PIECE) as u16;
+                line.say(ToBoard::Configure { offset, bytes });
+            }
+            let (length, crc) = (self.configuration.len() as u16, crc32(&self.configuration));
+            line.say(ToBoard::Commit { length, crc });
+        }
+    }
+
+    /// Says what a board that runs is to hear.
+    fn drive(&mut self, now_us: u64, line: &mut Line<'_>) {
+        if !self.is_heard(now_us, MOST_GONE_US) {
+            return;
+        }
+        // before all: what was asked earlier and would let light out is void then, and what is asked later waits until it acted
+        if let Some(before) = self.disarm
+            && is_due(&mut self.times.disarmed, now_us, DISARM_AGAIN_US)
+        {
+            line.say(ToBoard::Disarm { before, number: self.disarms });
+        }
+        if core::mem::take(&mut self.is_alive) {
+            self.times.said = Some(now_us);
+        }
+        let is_alive = self.times.said.is_some_and(|said| now_us.saturating_sub(said) <= ALIVE_US);
+        if is_alive && is_due(&mut self.times.alive, now_us, KEEP_ALIVE_US) {
+            line.say(ToBoard::KeepAlive { host_us: now_us });
+        }
+        while self.begins_again.is_none()
+            && let Some(order) = self.outbox.send(now_us, self.disarm)
+        {
+            // nothing is lit for a host that was not heard before
+            if order.ask.lights() && is_alive {
+                self.times.alive = Some(now_us);
+                line.say(ToBoard::KeepAlive { host_us: now_us });
+            }
+            line.say(ToBoard::Order(order));
+        }
+        if let Some(number) = self.seen.take() {
+            line.say(ToBoard::Seen { number });
+        }
+        self.ask_for_rows(now_us, line);
+    }
+
+    /// Asks for rows that are lost, and gives up on those that cannot be had.
+    fn ask_for_rows(&mut self, now_us: u64, line: &mut Line<'_>) {
+        let Some((from, count)) = self.missing() else {
+            self.times.missing = None;
+            return;
+        };
+        let since = *self.times.missing.get_or_insert(now_us);
+        if is_due(&mut self.times.asked, now_us, ROWS_AGAIN_US) {
+            line.say(ToBoard::Again { from, count });
+        }
+        if now_us.saturating_sub(since) > MOST_MISSING_US {
+            let to = from.wrapping_add(count.into());
+            self.stage = Stage::Failed(Trouble::LostRows { from, to });
         }
     }
 

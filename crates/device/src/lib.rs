@@ -13,7 +13,9 @@
 
 mod clock;
 mod host;
+mod line;
 mod outbox;
+mod times;
 mod trouble;
 mod twin;
 
