@@ -15,6 +15,6 @@ mod source;
 mod stream;
 
 pub use devices::devices;
-pub use looked::{SeenCamera, camera_json, camera_text, look_at};
+pub use looked::{NamedCamera, SeenCamera, camera_json, camera_text, look_at, look_at_all, no_camera_text};
 pub use shown::shown;
 pub use source::{Opened, Source};

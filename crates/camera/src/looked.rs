@@ -7,8 +7,10 @@ use tracelight_eye::about::{About, Stamps};
 use tracelight_eye::figure::histogram;
 use tracelight_eye::wall::{markers, well_exposed};
 use tracelight_eye::{Looks, grey};
-use tracelight_task::{Failure, Stop};
+use tracelight_task::{Failure, Stop, Task};
 
+use crate::devices::devices;
+use crate::shown::shown;
 use crate::source::{Opened, Source};
 
 /// How long images are counted, s.
@@ -116,6 +118,48 @@ impl SeenCamera {
             );
         }
         remarks
+    }
+}
+
+/// A camera's name, and what was seen of it.
+pub type NamedCamera = (String, Result<SeenCamera, Failure>);
+
+/// What was seen of each camera by its name: of that one, or of all that are plugged in. A second device of a camera is no news.
+///
+/// # Errors
+/// `interrupted`.
+pub fn look_at_all(
+    name: Option<&str>,
+    size_px: Option<[usize; 2]>,
+    task: Task<'_>,
+) -> Result<Vec<NamedCamera>, Failure> {
+    let names: Vec<String> = match name {
+        Some(name) => vec![name.to_owned()],
+        None => devices().iter().map(|path| path.display().to_string()).collect(),
+    };
+    task.stage("cameras", names.len() as u64);
+    let mut cameras = Vec::new();
+    for (step, one) in (0..).zip(names) {
+        task.check()?;
+        task.at(step);
+        let seen = look_at(&one, size_px, task.stop);
+        let is_other = seen.as_ref().is_err_and(|failure| failure.code == "not-a-camera");
+        if name.is_some() || !is_other {
+            cameras.push((shown(&one), seen));
+        }
+    }
+    task.check()?;
+    Ok(cameras)
+}
+
+/// What to say where no camera is plugged in.
+#[must_use]
+pub fn no_camera_text() -> &'static str {
+    match std::env::consts::OS {
+        "linux" => "cameras:  none is plugged in; one on the net is looked at with --camera http://…",
+        _ => {
+            "cameras:  those that are plugged in are read on Linux only; one on the net is looked at with --camera http://…"
+        }
     }
 }
 

@@ -116,9 +116,9 @@ fn trouble(telemetry: &Telemetry, waits: bool) -> Option<Event> {
     if waits || dark.contains(Darkness::Planned) || dark.contains(Darkness::Disarmed) {
         return None;
     }
-    // a head that is jolted is held, and that is why
-    let jolted = dark.contains(Darkness::Jolted).then_some(Darkness::Jolted);
-    let reason = jolted.or_else(|| Darkness::ALL.into_iter().find(|&reason| dark.contains(reason)))?;
+    // a head that is jolted is held, as one is whose host is silent, and that is why
+    let why = [Darkness::Jolted, Darkness::HostSilent].into_iter().find(|&reason| dark.contains(reason));
+    let reason = why.or_else(|| Darkness::ALL.into_iter().find(|&reason| dark.contains(reason)))?;
     let (code, words) = (reason.code(), reason.words());
     let lasted_s = TICK_F64_S;
     Some(Event { code, words, t_s, lasted_s, stops: false, latched: None, foot_turned_rad: None })

@@ -297,7 +297,7 @@ faults! {
         code: "tick-late",
         seen: "the hardware measures it, and a tick took more than one and a half times its length",
         soon: Soon::InTheTick,
-        measure: Measure::ticks("that a tick took"),
+        measure: Measure { digits: 2, ..Measure::ticks("that a tick took") },
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,

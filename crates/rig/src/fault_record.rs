@@ -113,7 +113,7 @@ mod tests {
             exceeded: Some(Exceeded { value: 2.0, bound: 1.5 }),
             ..jumped
         };
-        assert_eq!(late.evidence().to_string(), "2.0 ms that a tick took (bound 1.5)");
+        assert_eq!(late.evidence().to_string(), "2.00 ms that a tick took (bound 1.50)");
         let stop = FaultRecord { fault: Fault::EmergencyStop, joint: None, exceeded: None, ..jumped };
         assert!(stop.evidence().is_empty() && stop.evidence().to_string().is_empty());
     }

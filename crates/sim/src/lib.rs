@@ -55,7 +55,8 @@ pub use pid_law::PidLaw;
 pub use replay::replay;
 pub use room::{Room, Taken};
 pub use run::{
-    AFTERMATH_TICKS, Run, Simulated, SimulatedRig, Tick, arm, job_of, run, run_segments, tick, tick_trimmed,
+    AFTERMATH_TICKS, Run, ServedRig, Simulated, SimulatedRig, Tick, arm, job_of, run, run_segments, tick,
+    tick_trimmed,
 };
 pub use safety_settings::SafetySettings;
 pub use score::{Tracking, score};

@@ -1,5 +1,7 @@
 mod behind_wire;
 
+pub use behind_wire::ServedRig;
+
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 

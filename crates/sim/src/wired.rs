@@ -10,16 +10,15 @@ use tracelight_rig::{
 
 use crate::link::{LinkSettings, Way};
 
-/// Segments that the emulated board holds ahead, and rows that it can tell again: those of the firmware.
-const SEGMENTS: usize = 384;
-const ROWS: usize = 2048;
+/// The emulated board holds as many segments ahead, and can tell as many rows again, as that with pins.
+pub(crate) type Firmware = Board<384, 2048>;
 /// So much of a plan a board has before it begins, ticks.
 const LEAD_TICKS: u32 = 200;
 /// Length of a tick, µs, and how far into one the board has answered.
 const TICK_US: u64 = 1000;
 const ANSWERED_US: u64 = 900;
 /// What comes before a tick begins comes at the end of the one before it, µs.
-const LAST_US: u16 = 999;
+pub(crate) const LAST_US: u16 = 999;
 /// Kind of board: none that anybody can buy.
 const EMULATED: u16 = 0;
 /// Bytes that a board hands over in a tick at most: what USB carries.
@@ -29,7 +28,7 @@ const MOST_BYTES: usize = 8 * MOST_PACKET;
 #[derive(Clone, Debug)]
 pub(crate) struct Wired {
     host: Host,
-    board: Box<Board<SEGMENTS, ROWS>>,
+    board: Box<Firmware>,
     to_board: Way,
     to_host: Way,
     now_us: u64,
@@ -50,7 +49,7 @@ impl Wired {
         let config = Config { lead_ticks, ..config };
         let mut wired = Self {
             host: Host::new(config, 1),
-            board: Box::new(Board::new(identity(capabilities, Reset::PowerUp))),
+            board: Box::new(Firmware::new(identity(capabilities, Reset::PowerUp))),
             to_board: Way::new(link, seed),
             to_host: Way::new(link, seed.wrapping_add(1)),
             now_us: 0,
@@ -72,7 +71,7 @@ impl Wired {
             self.to_board.send(self.now_us, &bytes);
             let came = self.to_board.come(self.now_us);
             self.board.take(&came, LAST_US);
-            let said = self.said();
+            let said = said(&mut self.board);
             self.to_host.send(self.now_us, &said);
             let came = self.to_host.come(self.now_us);
             self.host.take(&came, self.now_us);
@@ -85,15 +84,7 @@ impl Wired {
         matches!(self.host.stage(), Stage::Running | Stage::Failed(_))
     }
 
-    /// What the board says.
-    fn said(&mut self) -> Vec<u8> {
-        let mut bytes = vec![0; MOST_BYTES];
-        let length = self.board.give(&mut bytes);
-        bytes.truncate(length);
-        bytes
-    }
-
-    pub(crate) const fn board(&self) -> &Board<SEGMENTS, ROWS> {
+    pub(crate) const fn board(&self) -> &Firmware {
         &self.board
     }
 
@@ -137,7 +128,7 @@ impl Wired {
     /// The board loses power for a moment; the host configures it anew.
     pub(crate) fn lose_power(&mut self) {
         self.capabilities.absolute = false;
-        *self.board = Board::new(identity(self.capabilities, Reset::BrownOut));
+        *self.board = Firmware::new(identity(self.capabilities, Reset::BrownOut));
         self.sessions += 1;
         self.host = Host::new(self.config, self.sessions);
         self.shake_hands();
@@ -149,11 +140,7 @@ impl Wired {
     }
 
     /// A millisecond of both: the board senses this, and does that. `exchange` lets the head do it.
-    pub(crate) fn tick(
-        &mut self,
-        sensed: &Sensed,
-        exchange: impl FnOnce(&Board<SEGMENTS, ROWS>, &Actuation),
-    ) {
+    pub(crate) fn tick(&mut self, sensed: &Sensed, exchange: impl FnOnce(&Firmware, &Actuation)) {
         if self.unplugged_until_us.is_some_and(|until| until <= self.now_us) {
             self.unplugged_until_us = None;
             self.to_board.cut(false);
@@ -170,7 +157,7 @@ impl Wired {
         self.board.take(&came, LAST_US);
         let actuation = self.board.tick(sensed);
         exchange(&self.board, &actuation);
-        let said = self.said();
+        let said = said(&mut self.board);
         let answered_us = self.now_us + ANSWERED_US;
         self.to_host.send(answered_us, &said);
         if !self.is_stalled() {
@@ -206,6 +193,14 @@ impl Wired {
     }
 }
 
-fn identity(capabilities: Capabilities, reset: Reset) -> Identity {
+pub(crate) fn identity(capabilities: Capabilities, reset: Reset) -> Identity {
     Identity { firmware: [0, 1, 0], source: [0; 8], board: EMULATED, id: *b"emulated", capabilities, reset }
+}
+
+/// What a board says.
+pub(crate) fn said(board: &mut Firmware) -> Vec<u8> {
+    let mut bytes = vec![0; MOST_BYTES];
+    let length = board.give(&mut bytes);
+    bytes.truncate(length);
+    bytes
 }

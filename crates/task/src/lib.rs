@@ -5,6 +5,7 @@
 mod failure;
 mod fan;
 mod meanings;
+mod nearest;
 mod pace;
 mod place;
 mod progress;
@@ -14,6 +15,7 @@ mod words;
 pub use failure::{Failure, Status};
 pub use fan::on_all_cores;
 pub use meanings::{codes, meaning};
+pub use nearest::nearest;
 pub use pace::Pace;
 pub use place::Place;
 pub use progress::{NoProgress, Progress, Task};

@@ -36,6 +36,14 @@ const MESSAGES: &[(&str, &str)] = &[
     ),
     ("no-strokes", "A drawing has no strokes to plan."),
     (
+        "port",
+        "A port to a board cannot be opened, or no pseudo-terminal made. The message says whether it is not there, may not be opened, or is another program's, and what to do.",
+    ),
+    (
+        "board",
+        "No board of Tracelight's answers at a port, or its line broke. See whether it has power, whether the cable holds, and whether Tracelight's program is loaded.",
+    ),
+    (
         "align",
         "The marks of --align do not say where the drawing goes: they lie too near each other or on one line, mirror it, or are in a unit that the drawing does not have. Choose marks near the corners of the drawing; a DXF and a CSV have coordinates of their own, pictures are measured in px from the top left.",
     ),

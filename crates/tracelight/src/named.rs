@@ -1,7 +1,5 @@
 //! What is in the files that the user named.
 
-use std::ffi::OsString;
-
 use tracelight_files as files;
 use tracelight_formats::ReadOptions;
 use tracelight_picture::{Pixels, Raster, Source, decode, decode_with};
@@ -9,27 +7,9 @@ use tracelight_rigfile as rigfile;
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_rigfile::head::KnownHead;
 use tracelight_sim::{Emulation, RigConfig};
-use tracelight_task::Failure;
+use tracelight_task::{Failure, nearest};
 
 use crate::cli::lettering::LetteringArgs;
-use crate::cli::nearest::nearest;
-
-/// Whether all that was typed is text: names of files go into messages, tables and results.
-///
-/// # Errors
-/// `usage`, with the name as it is.
-pub(crate) fn in_text(arguments: &[OsString]) -> Result<(), Failure> {
-    match arguments.iter().find(|argument| argument.to_str().is_none()) {
-        Some(name) => {
-            let message = format!(
-                "the name {name:?} is not UTF-8 text, as names of files have to be: rename the file, or give a link to it \
-                 (ln -s)"
-            );
-            Err(Failure::usage("usage", message))
-        }
-        None => Ok(()),
-    }
-}
 
 /// A picture or a drawing; `-` is standard input. What it is, its content says, not its name.
 pub(crate) fn picture(path: &str) -> Result<Source, Failure> {
@@ -84,7 +64,7 @@ pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
     }
     if rigfile::is_port(name) {
         let message = format!(
-            "{name}: no real head can be driven yet, only simulated ones: a preset that `tracelight rigs` lists, a rig file, or `emulated` for a board behind a wire"
+            "{name}: no real head can be driven yet, only simulated ones: a preset that `tracelight rigs` lists, a rig file, or `emulated` for a board behind a wire; `tracelight doctor --rig {name}` looks at a board"
         );
         return Err(Failure::usage("rig-file", message));
     }

@@ -91,9 +91,9 @@ impl Measure {
         Self { unit: "counts", what, factor: 1.0, digits: 1 }
     }
 
-    /// Ticks, told in ms.
+    /// Whole ticks, told in ms.
     pub(super) const fn ticks(what: &'static str) -> Self {
-        Self { unit: "ms", what, factor: 1.0, digits: 1 }
+        Self { unit: "ms", what, factor: 1.0, digits: 0 }
     }
 
     /// Radians, told in degrees.

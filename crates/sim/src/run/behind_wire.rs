@@ -3,12 +3,13 @@
 use std::collections::VecDeque;
 
 use tracelight_device::Host;
+use tracelight_rig::wire::Reset;
 use tracelight_rig::{Actuation, Capabilities, TICK_F64_S};
 
 use super::{Brain, SimulatedRig, Tick};
 use crate::RigConfig;
 use crate::link::{Emulation, LinkSettings};
-use crate::wired::Wired;
+use crate::wired::{Firmware, LAST_US, Wired, identity, said};
 
 impl SimulatedRig {
     /// Puts a wire and a board there if the rig is to have them.
@@ -24,21 +25,32 @@ impl SimulatedRig {
     #[must_use]
     pub fn behind_wire(mut self, link: LinkSettings, seed: u64) -> Self {
         let Brain::Here(brain) = &self.brain else { return self };
-        let capabilities = Capabilities {
-            stamps: self.open_loop.is_none(),
-            gate_watched: self.sensed.laser_on.is_some(),
-            light_watched: self.sensed.light.is_some(),
-            gyroscope: self.has_gyroscope,
-            times_ticks: true,
-            absolute: brain.1.is_homed(),
-            inputs: self.sensed.inputs.opened_by(0),
-        };
+        let capabilities = self.capabilities();
         let wired = Wired::new(*brain.0.config(), capabilities, link, seed);
         self.brain = Brain::Wired(Box::new(wired), VecDeque::new());
         while matches!(&self.brain, Brain::Wired(wired, _) if !wired.is_over()) {
             self.pass_wired();
         }
         self
+    }
+
+    /// What its board would say that it has.
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            stamps: self.open_loop.is_none(),
+            gate_watched: self.sensed.laser_on.is_some(),
+            light_watched: self.sensed.light.is_some(),
+            gyroscope: self.has_gyroscope,
+            times_ticks: true,
+            absolute: matches!(&self.brain, Brain::Here(brain) if brain.1.is_homed()),
+            inputs: self.sensed.inputs.opened_by(0),
+        }
+    }
+
+    /// Gives it a board whose host is another program.
+    pub fn served(self) -> ServedRig {
+        let board = Box::new(Firmware::new(identity(self.capabilities(), Reset::PowerUp)));
+        ServedRig { rig: self, board }
     }
 
     /// The host of a head behind a wire.
@@ -107,5 +119,29 @@ impl SimulatedRig {
         if let Brain::Wired(wired, _) = &mut self.brain {
             what(wired);
         }
+    }
+}
+
+/// A simulated head with its board, whose host is another program: bytes come in, bytes go out. A board without a configuration drives no motors, and the head
+/// sinks as it would.
+#[derive(Clone, Debug)]
+pub struct ServedRig {
+    rig: SimulatedRig,
+    board: Box<Firmware>,
+}
+
+impl ServedRig {
+    /// A millisecond in which these bytes came; what the board says, if it may.
+    pub fn pass(&mut self, came: &[u8], may_say: bool) -> Vec<u8> {
+        self.board.take(came, LAST_US);
+        let actuation = self.board.tick(&self.rig.sensed);
+        let told = self.board.machine().state().map(|state| (*state.told(), *state.home()));
+        self.rig.exchange(&actuation, &told.unwrap_or_default());
+        if may_say { said(&mut self.board) } else { Vec::new() }
+    }
+
+    /// Whether light falls.
+    pub fn is_lit(&self) -> bool {
+        self.rig.plant.light()
     }
 }

@@ -341,3 +341,49 @@ fn a_dot_does_not_stand_longer_for_a_host_that_begins_again_and_again() {
     let later = lit(&mut rig, 12_000);
     assert!((900..=1000).contains(&later), "{later} ticks of light after ten dark seconds");
 }
+
+/// A day of drawing the house again and again, with 1 % of all packets lost, 0.1 % spoilt, and the cable pulled ten times.
+#[test]
+#[ignore = "half an hour: `bash .ci/run long`; its short twins always run"]
+fn a_day_of_a_bad_wire_draws_every_house_whole() {
+    /// How long it takes the head to go back to where a drawing begins, ticks.
+    const BACK_TICKS: u32 = 2500;
+    let hours: u64 =
+        std::env::var("TRACELIGHT_HOURS").ok().and_then(|hours| hours.parse().ok()).unwrap_or(24);
+    let ticks_in_all = 3_600_000 * hours;
+    let config = RigConfig::report();
+    let plan = plan_of_all(&config, house());
+    let before = ink(&plan, &to_the_end(&mut here(&config, 1), &plan));
+    let mut rig = wired(&config, LinkSettings { loss: 0.01, corrupt: 1e-3, ..GOOD }, 1);
+    let (mut ticks, mut pulled, mut houses, mut worst) = (0_u64, 0, 0, Ink::default());
+    let mut dice = Dice::of_seed(24);
+    while ticks < ticks_in_all {
+        let begun = ticks;
+        let ran = drawn(&mut rig, &plan, |rig, tick| {
+            ticks = begun + u64::from(tick);
+            if ticks > (2 * pulled + 1) * ticks_in_all / 20 {
+                pulled += 1;
+                rig.suffer(Trouble::Unplug(5 + dice.below(900) as u32));
+            }
+        });
+        let ink = check_ink(&format!("house {houses}"), &ran, &plan, &before);
+        worst.missing_mm = worst.missing_mm.max(ink.missing_mm);
+        worst.doubled_mm = worst.doubled_mm.max(ink.doubled_mm);
+        worst.off_mm = worst.off_mm.max(ink.off_mm);
+        houses += 1;
+        rig.send(Command::Disarm).unwrap();
+        rig.step();
+        rig.send(Command::Abandon).unwrap();
+        for _ in 0..BACK_TICKS {
+            rig.send(Command::KeepAlive).unwrap();
+            assert!(!rig.step().light, "house {houses}: light on its way back");
+        }
+        ticks += u64::from(BACK_TICKS);
+    }
+    let host = rig.host().unwrap();
+    println!(
+        "{hours} h: {houses} houses, {pulled} times pulled, {} packets spoilt: worst {worst:?}, undisturbed {before:?}",
+        host.spoilt()
+    );
+    assert_eq!((host.stage(), pulled), (Stage::Running, 10));
+}

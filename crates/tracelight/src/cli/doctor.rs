@@ -1,6 +1,9 @@
+use std::path::PathBuf;
+
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_camera::{camera_json, camera_text, devices, look_at, shown};
+use tracelight_camera::{camera_json, camera_text, look_at_all, no_camera_text};
+use tracelight_port::{examine, examined_json, examined_text};
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Stop, Task};
 
@@ -8,11 +11,12 @@ use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::eyes::ImageSize;
 
-/// List connected cameras: their modes, frame rate and latency
+/// List connected cameras: their modes, frame rate and latency; look at a board
 #[derive(Args, Debug)]
 #[command(after_help = "Examples: tracelight doctor\n          \
                   tracelight doctor --camera /dev/video2 --camera-size 640x480\n          \
-                  tracelight doctor --camera http://192.168.1.20:8080/video\n\n\
+                  tracelight doctor --camera http://192.168.1.20:8080/video\n          \
+                  tracelight doctor --rig /dev/ttyACM0\n\n\
                   Each camera is used for about three seconds. Its exposure and gain are changed during the test and restored afterwards.")]
 pub(crate) struct DoctorArgs {
     /// Look at this camera only: /dev/video0, or an http:// network camera [default: all connected cameras]
@@ -21,48 +25,32 @@ pub(crate) struct DoctorArgs {
     /// Columns and rows of its images [default: about 1280x720]
     #[arg(long, value_name = "WxH")]
     camera_size: Option<ImageSize>,
+    /// Look at the board at this port only, which is disarmed: what it is, and how good the line is
+    #[arg(long, value_name = "PORT", conflicts_with = "camera")]
+    rig: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) voice: Voice,
 }
 
 pub(crate) fn run(args: &DoctorArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let bar = Bar::new(args.voice.quiet);
-    let task = Task { progress: &bar, stop };
-    let names: Vec<String> = match &args.camera {
-        Some(name) => vec![name.clone()],
-        None => devices().iter().map(|path| path.display().to_string()).collect(),
-    };
-    task.stage("cameras", names.len() as u64);
-    let mut cameras = Vec::new();
-    for (step, name) in (0..).zip(names) {
-        stop.check()?;
-        task.at(step);
-        let seen = look_at(&name, args.camera_size.map(|size| size.0), stop);
-        // a second device of a camera is no news
-        let is_other = seen.as_ref().is_err_and(|failure| failure.code == "not-a-camera");
-        if args.camera.is_some() || !is_other {
-            cameras.push((shown(&name), seen));
-        }
+    if let Some(port) = &args.rig {
+        let seen = examine(port, stop)?;
+        return Ok(Answer::new(examined_text(&seen), examined_json(&seen).to_string()));
     }
-    stop.check()?;
-    let presets = RigConfig::presets();
-    let rigs: Vec<&str> = presets.iter().map(|rig| rig.name.as_str()).collect();
+    let bar = Bar::new(args.voice.quiet);
+    let size_px = args.camera_size.map(|size| size.0);
+    let cameras = look_at_all(args.camera.as_deref(), size_px, Task { progress: &bar, stop })?;
+    let rigs: Vec<String> = RigConfig::presets().into_iter().map(|rig| rig.name).collect();
     let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let version = env!("CARGO_PKG_VERSION");
     let told = cameras.iter().map(|(name, seen)| camera_text(name, seen));
-    let none = match os {
-        "linux" => "cameras:  none is plugged in; one on the net is looked at with --camera http://…",
-        _ => {
-            "cameras:  those that are plugged in are read on Linux only; one on the net is looked at with --camera http://…"
-        }
-    };
     let text = [
         format!("program:  tracelight {version} for {os} on {arch}, {cores} cores"),
         format!("rigs:     {}, simulated; none can be plugged in yet", rigs.join(", ")),
     ]
     .into_iter()
-    .chain(cameras.is_empty().then(|| none.to_owned()))
+    .chain(cameras.is_empty().then(|| no_camera_text().to_owned()))
     .chain(told)
     .collect::<Vec<_>>()
     .join("\n");
@@ -71,8 +59,7 @@ pub(crate) fn run(args: &DoctorArgs, stop: &Stop) -> Result<Answer, Failure> {
         "version": version, "os": os, "arch": arch, "cores": cores, "rigs": rigs, "cameras": all,
     });
     let asked = args.camera.as_ref().and_then(|_| cameras.into_iter().next());
-    let failure = asked.and_then(|(_, seen)| seen.err());
-    match failure {
+    match asked.and_then(|(_, seen)| seen.err()) {
         Some(failure) if failure.code == "usage" => Err(failure),
         failure => Ok(Answer { failure, ..Answer::new(text, json.to_string()) }),
     }

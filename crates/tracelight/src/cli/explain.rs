@@ -1,8 +1,7 @@
 use clap::Args;
-use tracelight_task::{Failure, codes};
+use tracelight_task::{Failure, codes, nearest};
 
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::nearest::nearest;
 
 /// Say what a code in a message, a summary or a log means, and what to do
 #[derive(Args, Debug)]

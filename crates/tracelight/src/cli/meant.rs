@@ -3,9 +3,7 @@
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
-use tracelight_task::Failure;
-
-use crate::cli::nearest::nearest;
+use tracelight_task::{Failure, nearest};
 
 /// Endings of pictures and drawings that are read, whether or not a file of that name is there.
 const ENDINGS: [&str; 20] = [
@@ -14,7 +12,7 @@ const ENDINGS: [&str; 20] = [
 ];
 
 /// Commands of which people have heard, and that are not there yet.
-const COMING: [&str; 5] = ["studio", "jog", "home", "park", "rig"];
+const COMING: [&str; 4] = ["studio", "jog", "home", "park"];
 
 /// A command line with its command put in where it begins with a picture; `sim:PICTURE` is a camera that sees one. The first argument is the
 /// program, as everywhere.

@@ -19,7 +19,6 @@ pub(crate) mod laws;
 pub(crate) mod lettering;
 mod man;
 mod meant;
-pub(crate) mod nearest;
 pub(crate) mod ordering;
 pub(crate) mod placing;
 mod plan;
@@ -28,6 +27,7 @@ mod reading;
 mod recover;
 pub(crate) mod request;
 mod resume;
+mod rig;
 mod rigs;
 mod runs;
 pub(crate) mod shapes;
@@ -42,12 +42,12 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
+use tracelight_files as files;
 use tracelight_task::{Failure, Status, Stop};
 
 use self::answer::{Answer, Voice, print};
 use self::terminal::Terminal;
 use crate::interrupt;
-use crate::named;
 
 /// Give it a picture: a pan/tilt laser head draws it on the wall, to scale.
 #[derive(Parser, Debug)]
@@ -75,6 +75,7 @@ enum Command {
     Calibrate(calibrate::CalibrateArgs),
     Lab(lab::LabArgs),
     Doctor(doctor::DoctorArgs),
+    Rig(rig::RigArgs),
     Rigs(rigs::RigsArgs),
     Resume(resume::ResumeArgs),
     Runs(runs::RunsArgs),
@@ -93,7 +94,7 @@ pub(crate) fn main() -> ExitCode {
     let (terminal, typed) = Terminal::of(arguments);
     let json = typed.iter().any(|argument| argument == "--json");
     let program = Cli::command().styles(terminal::STYLES).term_width(terminal::width_of_help());
-    let arguments = match named::in_text(&typed).and_then(|()| meant::meant(typed, &program)) {
+    let arguments = match files::in_text(&typed).and_then(|()| meant::meant(typed, &program)) {
         Ok(arguments) => arguments,
         Err(failure) => return report(terminal, json, json, &failure),
     };
@@ -129,6 +130,7 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Calibrate(args) => (args.voice(), calibrate::run(args, stop)),
         Command::Lab(args) => (args.voice(), lab::run(args, answer_to, stop)),
         Command::Doctor(args) => (args.voice, doctor::run(args, stop)),
+        Command::Rig(args) => (args.voice(), rig::run(args, stop)),
         Command::Rigs(args) => (args.voice, rigs::run(args)),
         Command::Resume(args) => (args.voice, resume::run(args, traced, stop)),
         Command::Runs(args) => (args.voice, runs::run(args)),

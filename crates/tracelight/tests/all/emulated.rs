@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::support::{folder, run};
+use crate::support::{folder, program, run};
 
 const HOUSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/house.png");
 const STAR: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/star.png");
@@ -47,7 +47,7 @@ fn a_bad_wire_draws_as_well_as_a_good_one() {
     let (code, answer, said) = traced(STAR, &dir.join("out"), &flags);
     assert_eq!(code, 0, "{said}");
     assert!(answer["tracking"]["max_mm"].as_f64().unwrap() < 0.2, "{answer}");
-    assert_eq!(answer["laser"]["faults"][0]["code"], "holding", "it was waited for: {answer}");
+    assert_eq!(answer["laser"]["faults"][0]["code"], "host-silent", "it was waited for: {answer}");
 }
 
 #[test]
@@ -79,4 +79,44 @@ fn what_is_wrong_with_a_wire_needs_one() {
         let message = answer["error"]["message"].as_str().unwrap();
         assert!(code == 2 && message.contains(why), "{flags:?}: {message}");
     }
+}
+
+/// A board of another process, at a pseudo-terminal.
+struct Served {
+    child: std::process::Child,
+    path: String,
+}
+
+impl Served {
+    fn at(name: &str) -> Self {
+        let path = folder(name).join("head").to_str().unwrap().to_owned();
+        let child =
+            program().args(["rig", "serve", "--pty", &path, "--for", "60s", "--quiet"]).spawn().unwrap();
+        let until = std::time::Instant::now() + std::time::Duration::from_secs(10);
+        while !Path::new(&path).exists() && std::time::Instant::now() < until {
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        Self { child, path }
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+#[test]
+fn the_doctor_says_what_board_is_at_a_port() {
+    let board = Served::at("emulated-doctor");
+    let seen = run(&["doctor", "--rig", &board.path, "--json"]);
+    let told: Value = serde_json::from_slice(&seen.stdout).unwrap();
+    assert!(seen.status.success(), "{told}");
+    assert_eq!((&told["kind"], &told["segments"]), (&"emulated board".into(), &384.into()), "{told}");
+    assert!(told["round_trip_ms"]["median"].as_f64().unwrap() < 100.0, "{told}");
+    drop(board);
+    let nobody = run(&["doctor", "--rig", "/dev/ttyNONE3", "--json"]);
+    let told: Value = serde_json::from_slice(&nobody.stdout).unwrap();
+    assert_eq!((nobody.status.code(), &told["error"]["code"]), (Some(2), &"port".into()), "{told}");
 }

@@ -11,6 +11,7 @@ use crate::support::{folder, program, run};
 /// A line of every command; `@` is a folder.
 const LINES: &[&str] = &[
     "doctor",
+    "rig serve --pty @/head --for 0.5s",
     "rigs",
     "rigs show report",
     "explain",

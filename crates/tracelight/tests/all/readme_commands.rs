@@ -14,13 +14,14 @@ use crate::house_rules::sources;
 use crate::support::{folder, root};
 
 /// Lines that cannot run here, exactly as they stand, and why.
-const NOT_RUN: [(&str, &str); 7] = [
+const NOT_RUN: [(&str, &str); 8] = [
     ("cargo test --workspace", "it runs this test"),
     ("cargo run --release -p tracelight-job --example picture_to_figures", "cargo"),
     ("tracelight doctor", "looks at the cameras that are plugged in"),
     ("tracelight doctor --camera /dev/video2 --camera-size 640x480", "a real camera"),
     ("tracelight doctor --camera http://192.168.1.20:8080/video", "a camera on the net"),
     ("tracelight trace --camera /dev/video0", "a real camera"),
+    ("tracelight doctor --rig /dev/ttyACM0", "a real board"),
     ("tracelight completions bash > /etc/bash_completion.d/tracelight", "writes into the system's folders"),
 ];
 

@@ -6,7 +6,8 @@ const MOST: usize = 2;
 const LONGEST: usize = 80;
 
 /// The known word that is nearest, where one is near; of short words half at least must be right.
-pub(crate) fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+#[must_use]
+pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if typed.len() > LONGEST {
         return None;
     }

@@ -1,0 +1,131 @@
+//! Looks at a board: what it is, and how good the line to it is.
+
+#[cfg(unix)]
+use std::path::Path;
+#[cfg(unix)]
+use std::time::{Duration, Instant};
+
+#[cfg(unix)]
+use tracelight_rig::wire::{
+    FromBoard, Greeting, MOST_PACKET, Packets, ToBoard, VERSION, connection_of, packed,
+};
+#[cfg(unix)]
+use tracelight_task::{Failure, Stop};
+
+#[cfg(unix)]
+use crate::greeting::Examined;
+#[cfg(unix)]
+use crate::port::Port;
+
+/// For how long a board may think about a greeting, and how often it is greeted.
+#[cfg(unix)]
+const PATIENCE: Duration = Duration::from_millis(300);
+#[cfg(unix)]
+const GREETINGS: u32 = 3;
+/// How often it is asked how long the way is, and how far apart.
+#[cfg(unix)]
+const ANSWERS: usize = 60;
+#[cfg(unix)]
+const APART: Duration = Duration::from_millis(10);
+
+/// Greets the board at a port, which disarms it, and asks it some times for an answer; what it is, and how long that takes. It is not configured, and nothing moves.
+///
+/// # Errors
+/// `port`: it cannot be opened. `board`: nobody answers there. `interrupted`.
+#[cfg(unix)]
+pub fn examine(path: &Path, stop: &Stop) -> Result<Examined, Failure> {
+    let port = Port::open(path)?;
+    let mut line = Line { port, packets: Packets::new(), session: session(), began: Instant::now() };
+    let board = line.greet(stop)?;
+    let (mut round_trips_ms, mut unanswered) = (Vec::new(), 0);
+    // one of another version says nothing more
+    let answers = if board.version.0 == VERSION.0 { ANSWERS } else { 0 };
+    for _ in 0..answers {
+        stop.check()?;
+        match line.round_trip()? {
+            Some(took) => round_trips_ms.push(took.as_secs_f64() * 1e3),
+            None => unanswered += 1,
+        }
+        std::thread::sleep(APART);
+    }
+    Ok(Examined { port: path.display().to_string(), board, round_trips_ms, unanswered })
+}
+
+/// A number that no connection had before, as far as that can be: no board is armed by a greeting.
+#[cfg(unix)]
+fn session() -> u32 {
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    since.map_or(1, |since| since.subsec_nanos() ^ since.as_secs() as u32) | 1
+}
+
+#[cfg(unix)]
+struct Line {
+    port: Port,
+    packets: Packets,
+    session: u32,
+    began: Instant,
+}
+
+#[cfg(unix)]
+impl Line {
+    fn gone(&self, e: &std::io::Error) -> Failure {
+        Failure::failed("board", format!("{}: the line is gone ({e})", self.port.path().display()))
+    }
+
+    fn say(&mut self, said: &ToBoard<'_>) -> Result<(), Failure> {
+        let mut out = [0; MOST_PACKET];
+        let length = packed(said.body(connection_of(self.session)).bytes(), &mut out);
+        self.port.write(&out[..length]).map_err(|e| self.gone(&e))
+    }
+
+    /// The first answer that is what is looked for, in time.
+    fn hear<T>(
+        &mut self,
+        patience: Duration,
+        looked_for: impl Fn(FromBoard<'_>) -> Option<T>,
+    ) -> Result<Option<T>, Failure> {
+        let until = Instant::now() + patience;
+        let mut bytes = Vec::new();
+        while let Some(left) = until.checked_duration_since(Instant::now()) {
+            bytes.clear();
+            self.port.read(&mut bytes, left).map_err(|e| self.gone(&e))?;
+            for &byte in &bytes {
+                let said = self.packets.push(byte).and_then(FromBoard::read);
+                if let Some(found) = said.and_then(|(said, _)| looked_for(said)) {
+                    return Ok(Some(found));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    fn greet(&mut self, stop: &Stop) -> Result<Greeting, Failure> {
+        let session = self.session;
+        for _ in 0..GREETINGS {
+            stop.check()?;
+            self.say(&ToBoard::Hello { version: VERSION, session, program: *b"doctor\0\0" })?;
+            let is_ours = |said: FromBoard<'_>| match said {
+                FromBoard::Hello(board) if board.session == session => Some(board),
+                _ => None,
+            };
+            if let Some(board) = self.hear(PATIENCE, is_ours)? {
+                return Ok(board);
+            }
+        }
+        let message = format!(
+            "{}: no board of Tracelight's answers there; see whether it has power, and whether Tracelight's program is loaded",
+            self.port.path().display()
+        );
+        Err(Failure::failed("board", message))
+    }
+
+    fn round_trip(&mut self) -> Result<Option<Duration>, Failure> {
+        let host_us = u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX);
+        let asked = Instant::now();
+        self.say(&ToBoard::KeepAlive { host_us })?;
+        let is_its = |said: FromBoard<'_>| {
+            matches!(said, FromBoard::Pong { host_us: us, .. } if us == host_us).then_some(())
+        };
+        Ok(self.hear(PATIENCE, is_its)?.map(|()| asked.elapsed()))
+    }
+}

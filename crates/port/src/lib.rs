@@ -1,0 +1,21 @@
+//! Boards on a line of this computer.
+//!
+//! A [`Port`] is a serial port or a pseudo-terminal that is held by one program at a time. [`examine`] greets the board at one and says what it is.
+//! [`serve`] emulates a board with its head at a pseudo-terminal, by the clock, for whatever program speaks the wire's language.
+
+mod examine;
+mod greeting;
+#[cfg(unix)]
+mod port;
+#[cfg(unix)]
+mod serve;
+#[cfg(unix)]
+mod terminal;
+
+#[cfg(unix)]
+pub use examine::examine;
+pub use greeting::{Examined, examined_json, examined_text};
+#[cfg(unix)]
+pub use port::Port;
+#[cfg(unix)]
+pub use serve::{Served, Serving, serve};

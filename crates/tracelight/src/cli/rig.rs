@@ -1,0 +1,61 @@
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use tracelight_aim::HeadPose;
+use tracelight_pipeline::DEFAULT_DISTANCE_M;
+use tracelight_port::{Serving, serve};
+use tracelight_task::{Failure, Stop, Task};
+
+use crate::bar::Bar;
+use crate::cli::answer::{Answer, Voice};
+use crate::cli::by_hand::each;
+use crate::named;
+
+/// Emulate a board for programs that speak the wire's language
+#[derive(Args, Debug)]
+pub(crate) struct RigArgs {
+    #[command(subcommand)]
+    action: RigAction,
+}
+
+#[derive(Subcommand, Debug)]
+enum RigAction {
+    /// Emulate a board with its head at a pseudo-terminal, in real time
+    #[command(after_help = "Example: tracelight rig serve --pty out/head --for 2s")]
+    Serve(ServeArgs),
+}
+
+#[derive(Args, Debug)]
+struct ServeArgs {
+    /// Where the pseudo-terminal is to be: nothing may be there yet
+    #[arg(long, value_name = "PATH")]
+    pty: PathBuf,
+    /// Head: a preset's name (see `tracelight rigs`) or a rig file
+    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
+    rig: String,
+    /// How long, such as 30s [default: until Ctrl-C]
+    #[arg(long = "for", value_name = "TIME", value_parser = each)]
+    lasts_s: Option<f64>,
+    /// Draws what differs from head to head
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    voice: Voice,
+}
+
+impl RigArgs {
+    /// How it answers.
+    pub(crate) const fn voice(&self) -> Voice {
+        let RigAction::Serve(args) = &self.action;
+        args.voice
+    }
+}
+
+pub(crate) fn run(args: &RigArgs, stop: &Stop) -> Result<Answer, Failure> {
+    let RigAction::Serve(args) = &args.action;
+    let bar = Bar::new(args.voice.quiet);
+    let (config, pose) = (&named::rig(&args.rig)?, HeadPose::square_on(DEFAULT_DISTANCE_M));
+    let serving = Serving { config, pose, seed: args.seed, at: &args.pty, lasts_s: args.lasts_s };
+    let served = serve(&serving, Task { progress: &bar, stop })?;
+    Ok(Answer::new(served.text(), served.json().to_string()))
+}
