@@ -28,7 +28,8 @@ impl TestMove {
     pub(crate) fn from(config: &Config, goal: &PanTilt<Setpoint>) -> Self {
         let most = |j: Joint| config.sped_up_by(j, TORQUE_SHARE);
         let part_s = Joint::BOTH.into_iter().map(|j| part_s(&config.axes[j], most(j))).fold(0.0, f32::max);
-        let part_ticks = libm::ceilf(part_s / TICK_S) as u16;
+        // what no head needs does not run over
+        let part_ticks = (libm::ceilf(part_s / TICK_S) as u16).min(u16::MAX / 4);
         let from = goal.map(|setpoint| setpoint.position_rad);
         let acceleration_rad_s2 = PanTilt::from_fn(|j| {
             let limits = &config.axes[j].limits;

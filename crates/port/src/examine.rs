@@ -1,41 +1,31 @@
 //! Looks at a board: what it is, and how good the line to it is.
 
-#[cfg(unix)]
 use std::path::Path;
-#[cfg(unix)]
 use std::time::{Duration, Instant};
 
-#[cfg(unix)]
 use tracelight_rig::wire::{
     FromBoard, Greeting, MOST_PACKET, Packets, ToBoard, VERSION, connection_of, packed,
 };
-#[cfg(unix)]
 use tracelight_task::{Failure, Stop};
 
-#[cfg(unix)]
 use crate::greeting::Examined;
-#[cfg(unix)]
 use crate::port::Port;
+use crate::session::new_session;
 
 /// For how long a board may think about a greeting, and how often it is greeted.
-#[cfg(unix)]
 const PATIENCE: Duration = Duration::from_millis(300);
-#[cfg(unix)]
 const GREETINGS: u32 = 3;
 /// How often it is asked how long the way is, and how far apart.
-#[cfg(unix)]
 const ANSWERS: usize = 60;
-#[cfg(unix)]
 const APART: Duration = Duration::from_millis(10);
 
 /// Greets the board at a port, which disarms it, and asks it some times for an answer; what it is, and how long that takes. It is not configured, and nothing moves.
 ///
 /// # Errors
 /// `port`: it cannot be opened. `board`: nobody answers there. `interrupted`.
-#[cfg(unix)]
 pub fn examine(path: &Path, stop: &Stop) -> Result<Examined, Failure> {
     let port = Port::open(path)?;
-    let mut line = Line { port, packets: Packets::new(), session: session(), began: Instant::now() };
+    let mut line = Line { port, packets: Packets::new(), session: new_session(), began: Instant::now() };
     let board = line.greet(stop)?;
     let (mut round_trips_ms, mut unanswered) = (Vec::new(), 0);
     // one of another version says nothing more
@@ -51,14 +41,6 @@ pub fn examine(path: &Path, stop: &Stop) -> Result<Examined, Failure> {
     Ok(Examined { port: path.display().to_string(), board, round_trips_ms, unanswered })
 }
 
-/// A number that no connection had before, as far as that can be: no board is armed by a greeting.
-#[cfg(unix)]
-fn session() -> u32 {
-    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
-    since.map_or(1, |since| since.subsec_nanos() ^ since.as_secs() as u32) | 1
-}
-
-#[cfg(unix)]
 struct Line {
     port: Port,
     packets: Packets,
@@ -66,7 +48,6 @@ struct Line {
     began: Instant,
 }
 
-#[cfg(unix)]
 impl Line {
     fn gone(&self, e: &std::io::Error) -> Failure {
         Failure::failed("board", format!("{}: the line is gone ({e})", self.port.path().display()))

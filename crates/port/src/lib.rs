@@ -1,8 +1,12 @@
 //! Boards on a line of this computer.
 //!
 //! A [`Port`] is a serial port or a pseudo-terminal that is held by one program at a time. [`examine`] greets the board at one and says what it is.
+//! [`Device`] is the head behind it, as a rig that a session drives.
 //! [`serve`] emulates a board with its head at a pseudo-terminal, by the clock, for whatever program speaks the wire's language.
 
+#[cfg(unix)]
+mod device;
+#[cfg(unix)]
 mod examine;
 mod greeting;
 #[cfg(unix)]
@@ -10,8 +14,12 @@ mod port;
 #[cfg(unix)]
 mod serve;
 #[cfg(unix)]
+mod session;
+#[cfg(unix)]
 mod terminal;
 
+#[cfg(unix)]
+pub use device::Device;
 #[cfg(unix)]
 pub use examine::examine;
 pub use greeting::{Examined, examined_json, examined_text};

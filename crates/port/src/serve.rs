@@ -64,7 +64,13 @@ impl Served {
 pub fn serve(serving: &Serving<'_>, task: Task<'_>) -> Result<Served, Failure> {
     let Serving { config, pose, seed, at, lasts_s } = *serving;
     let wrong = |e: std::io::Error| {
-        Failure::failed("port", format!("{}: no pseudo-terminal can be made there: {e}", at.display()))
+        let why = match e.kind() {
+            std::io::ErrorKind::AlreadyExists => {
+                "there is something of that name, a board perhaps: choose another".to_owned()
+            }
+            _ => e.to_string(),
+        };
+        Failure::failed("port", format!("{}: no pseudo-terminal can be made there: {why}", at.display()))
     };
     let mut terminal = Terminal::new(at).map_err(wrong)?;
     let mut rig = SimulatedRig::new(config, pose, seed).served();

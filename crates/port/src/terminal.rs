@@ -17,6 +17,8 @@ pub(crate) struct Terminal {
     /// The other end is held open, so that nobody's going is taken for the end of the line.
     _theirs: File,
     link: PathBuf,
+    /// Name of the other end.
+    name: PathBuf,
 }
 
 impl Terminal {
@@ -32,18 +34,21 @@ impl Terminal {
         if let Some(folder) = link.parent() {
             std::fs::create_dir_all(folder)?;
         }
-        // one that a killed program has left behind; anything else is somebody's
-        if std::fs::read_link(link).is_ok_and(|old| old.starts_with("/dev/pts")) {
+        // one that a killed program has left behind points nowhere; anything else is somebody's
+        if std::fs::read_link(link).is_ok_and(|old| !old.exists()) {
             std::fs::remove_file(link)?;
         }
-        symlink(name.to_string_lossy().as_ref(), link)?;
-        Ok(Self { ours: ours.into(), _theirs: theirs.into(), link: link.to_owned() })
+        let name = PathBuf::from(name.to_string_lossy().into_owned());
+        symlink(&name, link)?;
+        Ok(Self { ours: ours.into(), _theirs: theirs.into(), link: link.to_owned(), name })
     }
 }
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // who cannot take it away leaves it: it points nowhere then
-        let _ = std::fs::remove_file(&self.link);
+        if std::fs::read_link(&self.link).is_ok_and(|to| to == self.name) {
+            // who cannot take it away leaves it: it points nowhere then
+            let _ = std::fs::remove_file(&self.link);
+        }
     }
 }

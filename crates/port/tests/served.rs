@@ -3,22 +3,26 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use tracelight_aim::HeadPose;
 use tracelight_device::{Host, Stage};
-use tracelight_port::{Port, Served, Serving, examine, examined_json, examined_text, serve};
+use tracelight_pipeline::request_of;
+use tracelight_port::{Device, Port, Served, Serving, examine, examined_json, examined_text, serve};
 use tracelight_rig::{Command, PanTilt, Phase, RateLimit, Segment};
-use tracelight_sim::RigConfig;
+use tracelight_session::{Request, Session, State};
+use tracelight_sim::{RigConfig, job_of};
+use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
 use tracelight_task::{Failure, NoProgress, Stop, Task};
+use tracelight_trajectory::plan;
 
-fn serving<'a>(config: &'a RigConfig, at: &'a Path) -> Serving<'a> {
+fn serving<'a>(config: &'a RigConfig, at: &'a std::path::Path) -> Serving<'a> {
     Serving { config, pose: HeadPose::square_on(0.9144), seed: 1, at, lasts_s: None }
 }
 
 /// Serves a rig for as long as something is done with it.
-fn served(rig: &str, name: &str, with: impl FnOnce(&Path)) -> Result<Served, Failure> {
+fn served(rig: &str, name: &str, with: impl FnOnce(&std::path::Path)) -> Result<Served, Failure> {
     let path = std::env::temp_dir().join(format!("tracelight-{name}-{}", std::process::id()));
     let config = RigConfig::preset(rig).unwrap();
     let stop = Stop::default();
@@ -77,6 +81,12 @@ fn one_program_at_a_time_has_a_port() {
         assert!(refused.message.contains("another program has it open"), "{}", refused.message);
         drop(port);
         assert!(Port::open(path).is_ok());
+        // nor is a second board put in the place of the first
+        let stop = Stop::default();
+        let task = Task { progress: &NoProgress, stop: &stop };
+        let twice = serve(&serving(&RigConfig::report(), path), task).unwrap_err();
+        assert!(twice.message.contains("a board perhaps"), "{}", twice.message);
+        assert!(examine(path, &stop).is_ok(), "the first is still there");
     })
     .unwrap();
 }
@@ -85,7 +95,8 @@ fn one_program_at_a_time_has_a_port() {
 fn what_is_no_port_is_told() {
     let file = std::env::temp_dir().join(format!("tracelight-no-port-{}", std::process::id()));
     std::fs::write(&file, "text").unwrap();
-    let (no, none) = (Port::open(&file).unwrap_err(), Port::open(Path::new("/dev/ttyNONE7")).unwrap_err());
+    let (no, none) =
+        (Port::open(&file).unwrap_err(), Port::open(std::path::Path::new("/dev/ttyNONE7")).unwrap_err());
     assert!(no.message.contains("is no serial port"), "{}", no.message);
     assert!(none.message.contains("is the board plugged in?"), "{}", none.message);
     // and what is somebody's is not written over
@@ -95,7 +106,12 @@ fn what_is_no_port_is_told() {
     let refused = serve(&serving(&RigConfig::report(), &file), task).unwrap_err();
     assert!(refused.message.contains("no pseudo-terminal"), "{}", refused.message);
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "text");
-    std::fs::remove_file(file).unwrap();
+    std::fs::remove_file(&file).unwrap();
+    // what a killed board has left behind is in nobody's way
+    std::os::unix::fs::symlink("/dev/pts/999999", &file).unwrap();
+    let task = Task { progress: &NoProgress, stop: &stop };
+    serve(&serving(&RigConfig::report(), &file), task).unwrap();
+    assert!(std::fs::symlink_metadata(&file).is_err());
 }
 
 /// A stretch of a slow sway from zero on.
@@ -153,4 +169,46 @@ fn a_host_of_another_thread_configures_arms_and_lights_it() {
     });
     let lit_s = ran.unwrap().lit_s;
     assert!((1.5..2.0).contains(&lit_s), "{lit_s} s of light of 1.75");
+}
+
+/// The whole way but the program: a session drives a head that it knows by its telemetry alone, through a port, by the clock.
+#[test]
+fn a_session_parks_arms_and_traces_a_drawing_through_a_port() {
+    let config = RigConfig::preset("report").unwrap();
+    let pose = HeadPose::square_on(0.9144);
+    let mut path = Path::new(Point::new(0.05, 0.0));
+    path.push(Element::Arc { centre: Point::ORIGIN, sweep: std::f64::consts::TAU });
+    path.close();
+    let drawing = Drawing { strokes: vec![Stroke::new(path)] };
+    let plan = plan(&drawing, &config.machine(pose), &request_of(&config)).unwrap();
+    let planned_lit_s =
+        plan.lit_ticks().iter().flatten().map(|[from, to]| f64::from(to - from) * 1e-3).sum::<f64>();
+    let ran = served("report", "traced", |at| {
+        let device = Device::connect(at, &config, &Stop::default()).unwrap();
+        let mut wall = Session::new(device);
+        let until = Instant::now() + Duration::from_secs(40);
+        let (mut reached, mut parked) = (Vec::new(), false);
+        while wall.state() != State::Done && Instant::now() < until {
+            let told = wall.tick().unwrap_or_else(|| panic!("{:?}", wall.rig().failure()));
+            assert_eq!(told.fault(), None, "{reached:?}");
+            if reached.last() != Some(&wall.state()) {
+                reached.push(wall.state());
+            }
+            let result = match wall.state() {
+                // it sank while its motors had no volts
+                State::Ready if !parked => {
+                    parked = true;
+                    wall.request(Request::Park)
+                }
+                State::Ready => wall.request(Request::Arm),
+                State::Armed => wall.request(Request::Trace(job_of(&plan, false))),
+                _ => Ok(()),
+            };
+            result.unwrap();
+        }
+        assert_eq!(wall.state(), State::Done, "{reached:?}");
+        assert_eq!(wall.rig().host().stage(), Stage::Running);
+    });
+    let lit_s = ran.unwrap().lit_s;
+    assert!((lit_s - planned_lit_s).abs() < 0.05, "{lit_s} s of light of {planned_lit_s}");
 }
