@@ -23,6 +23,8 @@ pub(crate) struct Outbox {
     wanted: u16,
     /// Segments that the board had room for when it said so.
     free: u16,
+    /// What belongs to a job whose Arm was lost with its connection: it waits for the next one.
+    held: Vec<Ask>,
     /// When the board last took something, or something was put on its way, µs.
     moved_us: u64,
 }
@@ -42,7 +44,9 @@ impl Outbox {
             .orders
             .iter()
             .filter(|order| !is_before(order.sequence, self.wanted) && is_segment(order.ask));
-        self.in_flight() < WINDOW && coming.count() < usize::from(self.free)
+        let held = self.held.len();
+        usize::from(self.in_flight()) + held < usize::from(WINDOW)
+            && coming.count() + held < usize::from(self.free)
     }
 
     /// Whether any of them lets light out.
@@ -56,6 +60,23 @@ impl Outbox {
     }
 
     pub(crate) fn push(&mut self, ask: Ask) {
+        match ask {
+            Ask::Command(Command::Append(_) | Command::Finish) if !self.held.is_empty() => {
+                self.held.push(ask)
+            }
+            Ask::Command(Command::Abandon | Command::Unhome) => {
+                self.held.clear();
+                self.order(ask);
+            }
+            Ask::Arm { .. } => {
+                self.order(ask);
+                std::mem::take(&mut self.held).into_iter().for_each(|ask| self.order(ask));
+            }
+            Ask::Command(_) => self.order(ask),
+        }
+    }
+
+    fn order(&mut self, ask: Ask) {
         self.orders.push_back(Order { sequence: self.next, ask });
         self.next = self.next.wrapping_add(1);
     }
@@ -96,12 +117,21 @@ impl Outbox {
         (usize::from(count) <= self.orders.len()).then(|| self.orders.drain(..usize::from(count)).collect())
     }
 
-    /// After a new greeting: what was not taken is sent from number 0 on, but for what would let light out, and for where a head was then.
+    /// After a new greeting: what was not taken is sent from number 0 on, but for what would let light out, and for where a head was then. What was sent behind
+    /// an Arm that was lost waits for another.
     pub(crate) fn begin_again(&mut self) {
-        let lasts = |ask: Ask| !ask.lights() && !matches!(ask, Ask::Command(Command::Home(_)));
-        let left = self.orders.drain(..).filter(|order| lasts(order.ask)).collect::<Vec<_>>();
-        *self = Self::default();
-        left.into_iter().for_each(|order| self.push(order.ask));
+        let Self { orders, held, .. } = std::mem::take(self);
+        let mut is_lost = false;
+        for ask in orders.into_iter().map(|order| order.ask) {
+            let is_of_job = matches!(ask, Ask::Command(Command::Append(_) | Command::Finish));
+            match ask {
+                Ask::Arm { .. } => is_lost = true,
+                Ask::Command(Command::Point(_) | Command::Home(_)) => {}
+                _ if is_lost && is_of_job => self.held.push(ask),
+                _ => self.push(ask),
+            }
+        }
+        self.held.extend(held);
     }
 }
 

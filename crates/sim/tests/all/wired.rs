@@ -387,3 +387,34 @@ fn a_day_of_a_bad_wire_draws_every_house_whole() {
     );
     assert_eq!((host.stage(), pulled), (Stage::Running, 10));
 }
+
+/// What was sent behind an Arm that the wire lost with it belongs to a job that has not begun: it waits for the next Arm.
+#[test]
+fn a_cable_that_is_pulled_as_a_job_begins_takes_nothing_of_it() {
+    let config = RigConfig::report();
+    let plan = plan_of(&config, star(0.2));
+    let before = ink(&plan, &to_the_end(&mut here(&config, 1), &plan));
+    for when in 1..60 {
+        let link = LinkSettings { delay_ms: f64::from(when % 5), jitter_ms: 3.0, ..GOOD };
+        let mut rig = wired(&config, link, when.into());
+        let mut again = false;
+        for job in ["first", "second"] {
+            let what = format!("{job} job, pulled at tick {when}");
+            let ran = drawn(&mut rig, &plan, |rig, tick| {
+                if tick == when && (job == "second") == (when % 2 == 0) {
+                    again = true;
+                    rig.suffer(Trouble::Unplug(40));
+                }
+            });
+            check_ink(&what, &ran, &plan, &before);
+            rig.send(Command::Disarm).unwrap();
+            rig.step();
+            rig.send(Command::Abandon).unwrap();
+            for _ in 0..2500 {
+                rig.send(Command::KeepAlive).unwrap();
+                rig.step();
+            }
+        }
+        assert!(again);
+    }
+}
