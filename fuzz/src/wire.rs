@@ -21,14 +21,8 @@ pub const BODY_TO_HOST: u8 = 3;
 const MOST_PIECES: usize = 512;
 
 fn board() -> Board<8, 64> {
-    Board::new(Identity {
-        firmware: [0, 1, 0],
-        source: [0; 8],
-        board: 0,
-        id: [0; 8],
-        capabilities: Capabilities { absolute: true, stamps: true, ..Capabilities::default() },
-        reset: Reset::PowerUp,
-    })
+    let capabilities = Capabilities { absolute: true, stamps: true, ..Capabilities::default() };
+    Board::new(Identity::emulated(capabilities, Reset::PowerUp))
 }
 
 /// Whether any packet in these bytes may let light out.

@@ -1,7 +1,7 @@
 //! The whole program of a board, fed by packets: every byte that it says, hashed.
 
 use tracelight_board::{Board, Identity, MOST_CONFIGURATION, write_configuration};
-use tracelight_rig::wire::{Ask, MOST_PACKET, Order, Reset, ToBoard, connection_of, crc32, packed};
+use tracelight_rig::wire::{Ask, MOST_PACKET, Order, Reset, ToBoard, connection_of, crc32};
 use tracelight_rig::{Capabilities, Command};
 
 use crate::head::Head;
@@ -40,7 +40,7 @@ const CAPABILITIES: Capabilities = Capabilities {
 /// Says something to a board.
 fn say(board: &mut Firmware, said: &ToBoard<'_>) {
     let mut out = [0; MOST_PACKET];
-    let length = packed(said.body(connection_of(SESSION)).bytes(), &mut out);
+    let length = said.packed(connection_of(SESSION), &mut out);
     board.take(out.get(..length).unwrap_or_default(), 0);
 }
 

@@ -21,9 +21,11 @@ mod machine;
 mod orders;
 mod ring;
 mod server;
+mod start;
 
 pub use board::Board;
 pub use configuration::{MOST_CONFIGURATION, read_configuration, write_configuration};
 pub use law::law_hash;
 pub use machine::{Disarm, Inbox, MOST_ORDERS_A_TICK, Machine, May, NewConfiguration, Told};
 pub use server::{Identity, Server};
+pub use start::Start;

@@ -5,6 +5,7 @@ use tracelight_rig::wire::{Ask, Configured, Order, Row, RowBytes, as_told, is_be
 use tracelight_rig::{Actuation, Command, FaultRecord, Phase, Sensed, Telemetry};
 
 use crate::configuration::{MOST_CONFIGURATION, read_configuration, write_configuration};
+use crate::start::Start;
 
 /// Orders that are taken before a tick at most: each takes some of its time.
 pub const MOST_ORDERS_A_TICK: u8 = 8;
@@ -171,21 +172,16 @@ impl<const SEGMENTS: usize> Machine<SEGMENTS> {
 
     /// Begins anew with a configuration. A head that was homed is told where it stands, if it is held to be where it was; what is known of motors and light is kept.
     fn begin(&mut self, new: &NewConfiguration, sensed: &Sensed, tick: u32) -> Configured {
-        let before = self.running.as_ref().map(|(_, state)| (state.homed_at(sensed), state.carried()));
-        let controller = Controller::new(new.config);
-        let state = if new.is_absolute { controller.start_homed(sensed) } else { controller.start(sensed) };
-        let mut state: State<SEGMENTS> = state.counting_from(tick);
-        let (home, carried) = before.map_or((None, None), |(home, carried)| (home, Some(carried)));
-        let kept = home
-            .filter(|_| new.is_same && !new.is_absolute)
-            .filter(|&home| controller.accept(&mut state, Command::Home(home)).is_ok());
-        if let Some(carried) = &carried {
-            controller.carry(&mut state, carried);
-        }
+        let &NewConfiguration { config, is_absolute, is_same, crc, law } = new;
+        let before = self.state();
+        let home = before.filter(|_| is_same && !is_absolute).and_then(|state| state.homed_at(sensed));
+        let carried = before.map(State::carried);
+        let controller = Controller::new(config);
+        let state = Start { tick, is_absolute, home, carried }.state(&controller, sensed);
+        let home = home.filter(|_| state.is_homed());
         self.running = Some((controller, state));
         self.void_before = None;
-        let heat = carried.map(|carried| carried.heat);
-        Configured { crc: new.crc, tick, law: new.law, home: kept, heat }
+        Configured { crc, tick, law, home, heat: carried.map(|carried| carried.heat) }
     }
 }
 
@@ -202,17 +198,15 @@ fn obey<const SEGMENTS: usize>(
     ask: Ask,
     last_nonce: &mut u32,
 ) -> bool {
-    let command = match ask {
+    if let Ask::Arm { nonce, .. } = ask {
         // nor is one that is far ahead: it would leave none for those that come
-        Ask::Arm { nonce, .. } if nonce <= *last_nonce || nonce - *last_nonce > MOST_NONCES => return false,
-        Ask::Arm { nonce, acknowledges } => {
-            *last_nonce = nonce;
-            Command::Arm { acknowledges }
+        if nonce <= *last_nonce || nonce - *last_nonce > MOST_NONCES {
+            return false;
         }
-        Ask::Command(command) => command,
-    };
+        *last_nonce = nonce;
+    }
     // a head that cannot be homed now says so by not being homed
-    let _ = controller.accept(state, command);
+    let _ = controller.accept(state, ask.command());
     true
 }
 

@@ -4,7 +4,7 @@ use tracelight_rig::wire::{
     Ask, Configured, FromBoard, Greeting, MOST_PACKET, Order, Packets, Reset, Rows, RowsHeader, ToBoard,
     VERSION, WrongConfiguration, connection_of, crc32, packed,
 };
-use tracelight_rig::{Capabilities, Command, FaultRecord, Phase};
+use tracelight_rig::{Capabilities, Command, FaultRecord, Phase, TICK_NS};
 
 use crate::configuration::{MOST_CONFIGURATION, read_configuration};
 use crate::law::law_hash;
@@ -16,8 +16,6 @@ use crate::ring::Ring;
 const FAULT_AGAIN_TICKS: u32 = 50;
 /// Ticks after which it greets again while nobody has greeted it.
 const GREET_TICKS: u32 = 100;
-/// Length of a tick, ns.
-const TICK_NS: u32 = 1_000_000;
 
 /// What a board is.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +32,19 @@ pub struct Identity {
     pub capabilities: Capabilities,
     /// Why it started.
     pub reset: Reset,
+}
+
+impl Identity {
+    /// Of a board that is emulated: kind 0, which nobody can buy.
+    pub fn emulated(capabilities: Capabilities, reset: Reset) -> Self {
+        let number = |text: &str| text.parse().unwrap_or_default();
+        let firmware = [
+            number(env!("CARGO_PKG_VERSION_MAJOR")),
+            number(env!("CARGO_PKG_VERSION_MINOR")),
+            number(env!("CARGO_PKG_VERSION_PATCH")),
+        ];
+        Self { firmware, source: [0; 8], board: 0, id: *b"emulated", capabilities, reset }
+    }
 }
 
 /// The board's side of the wire.
@@ -295,7 +306,7 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
     /// The next packet; its length, 0 if nothing is to be said.
     fn packet(&mut self, out: &mut [u8; MOST_PACKET]) -> usize {
         let connection = connection_of(self.session.unwrap_or_default());
-        let mut say = |said: FromBoard<'_>| packed(said.body(connection).bytes(), out);
+        let mut say = |said: FromBoard<'_>| said.packed(connection, out);
         if core::mem::take(&mut self.due.greeting) {
             return say(FromBoard::Hello(self.greeting()));
         }

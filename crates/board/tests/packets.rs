@@ -30,14 +30,8 @@ impl Bench {
     fn new() -> Self {
         // without encoders nothing is asked of them: here they would follow what they are told, not their motors
         let config = RigConfig::preset("stepper").unwrap().control_config();
-        let identity = Identity {
-            firmware: [0, 1, 0],
-            source: [0; 8],
-            board: 0,
-            id: [0; 8],
-            capabilities: Capabilities { absolute: true, stamps: true, ..Capabilities::default() },
-            reset: Reset::PowerUp,
-        };
+        let capabilities = Capabilities { absolute: true, stamps: true, ..Capabilities::default() };
+        let identity = Identity::emulated(capabilities, Reset::PowerUp);
         let count_rad = config.axes.pan.count_rad;
         let (host, board) = (Host::new(config, SESSION), Board::new(identity));
         Self { host, board, told: Telemetry::default(), count_rad, now_us: 0 }

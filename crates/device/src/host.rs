@@ -1,19 +1,19 @@
 use std::collections::{BTreeMap, VecDeque};
 
-use tracelight_board::{MOST_CONFIGURATION, law_hash, write_configuration};
+use tracelight_board::{MOST_CONFIGURATION, Start, law_hash, write_configuration};
 use tracelight_control::{Carried, Config};
 use tracelight_rig::wire::{
     Ask, Configured, FromBoard, Greeting, Packets, Rows, ToBoard, VERSION, WrongConfiguration as Wrong,
     connection_of, crc32,
 };
-use tracelight_rig::{Command, Telemetry};
+use tracelight_rig::{Command, TICK_NS, Telemetry};
 
 use crate::clock::Clock;
 use crate::line::Line;
 use crate::outbox::Outbox;
 use crate::times::{Times, is_due};
 use crate::trouble::Trouble;
-use crate::twin::{MOST_SEGMENTS, Start, Twin};
+use crate::twin::{MOST_SEGMENTS, Twin};
 
 /// How often a board is greeted that does not answer, µs.
 const GREET_AGAIN_US: u64 = 100_000;
@@ -31,8 +31,6 @@ const ALIVE_US: u64 = 40_000;
 const DISARM_AGAIN_US: u64 = 5_000;
 /// How often lost rows are asked for, µs.
 const ROWS_AGAIN_US: u64 = 10_000;
-/// Length of a tick, ns.
-const TICK_NS: u32 = 1_000_000;
 /// How long rows may be missing that are asked for, µs.
 const MOST_MISSING_US: u64 = 3_000_000;
 /// How long nothing may come of a board that runs, µs: time to put a cable in again.
@@ -307,13 +305,9 @@ impl Host {
 
     /// Takes bytes of the board.
     pub fn take(&mut self, bytes: &[u8], now_us: u64) {
+        let mut packets = std::mem::take(&mut self.packets);
         for &byte in bytes {
-            let Some(body) = self.packets.push(byte) else { continue };
-            // the packet's bytes are in the way of what it does
-            let mut said = [0; tracelight_rig::wire::MOST_BODY];
-            let length = body.len();
-            said[..length].copy_from_slice(body);
-            if let Some((said, connection)) = FromBoard::read(&said[..length])
+            if let Some((said, connection)) = packets.push(byte).and_then(FromBoard::read)
                 && (connection == connection_of(self.session) || matches!(said, FromBoard::Hello(_)))
                 && let Err(trouble) = self.hear(said, now_us)
             {
@@ -321,6 +315,7 @@ impl Host {
                 self.times.disarmed = None;
             }
         }
+        self.packets = packets;
     }
 
     fn hear(&mut self, said: FromBoard<'_>, now_us: u64) -> Result<(), Trouble> {
@@ -416,8 +411,8 @@ impl Host {
     /// Keeps rows until their turn comes.
     fn keep(&mut self, rows: &Rows<'_>, now_us: u64) {
         if self.begins_again.is_none() {
-            self.outbox.hear(rows.wanted, rows.free, now_us);
-            if rows.disarm == self.disarms {
+            self.outbox.hear(rows.header.wanted, rows.header.free, now_us);
+            if rows.header.disarm == self.disarms {
                 self.disarm = None;
             }
         }

@@ -1,5 +1,6 @@
 use std::fmt;
 
+use tracelight_rig::TICK_NS;
 use tracelight_rig::wire::{VERSION, WrongConfiguration};
 
 /// Why a head behind a wire cannot be driven, or can no more.
@@ -74,7 +75,7 @@ impl fmt::Display for Trouble {
                 VERSION.0, VERSION.1
             ),
             Self::TickLength { board_ns } => {
-                write!(f, "the board's ticks are {board_ns} ns long; this program's law is made for 1000000 ns")
+                write!(f, "the board's ticks are {board_ns} ns long; this program's law is made for {TICK_NS} ns")
             }
             Self::Segments { board } => {
                 write!(f, "the board holds {board} segments ahead, more than this program follows")

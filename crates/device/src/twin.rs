@@ -1,6 +1,7 @@
-use tracelight_control::{Carried, Config, Controller, State};
-use tracelight_rig::wire::{Ask, Order, Row};
-use tracelight_rig::{Command, PanTilt, Phase, Telemetry};
+use tracelight_board::Start;
+use tracelight_control::{Config, Controller, State};
+use tracelight_rig::wire::{Order, Row};
+use tracelight_rig::{Command, Phase, Telemetry};
 
 use crate::trouble::{Divergence, Trouble};
 
@@ -13,19 +14,6 @@ pub struct Twin {
     controller: Controller,
     start: Start,
     state: Option<Box<State<MOST_SEGMENTS>>>,
-}
-
-/// How the board's controller began.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Start {
-    /// With which tick.
-    pub(crate) tick: u32,
-    /// Whether its encoders know where they are.
-    pub(crate) is_absolute: bool,
-    /// Counts at which it was told to stand, if it kept its homing.
-    pub(crate) home: Option<PanTilt<i32>>,
-    /// What it knew of its head before.
-    pub(crate) carried: Option<Carried>,
 }
 
 impl Twin {
@@ -55,41 +43,20 @@ impl Twin {
     /// Where it does not come to the same.
     pub(crate) fn follow(&mut self, tick: u32, row: &Row, orders: &[Order]) -> Result<Telemetry, Trouble> {
         let Self { controller, start, state } = self;
-        let state = state.get_or_insert_with(|| {
-            let state = if start.is_absolute {
-                controller.start_homed(&row.sensed)
-            } else {
-                controller.start(&row.sensed)
-            };
-            let mut state = Box::new(state.counting_from(start.tick));
-            if let Some(home) = start.home {
-                let _ = controller.accept(&mut state, Command::Home(home));
-            }
-            if let Some(carried) = &start.carried {
-                controller.carry(&mut state, carried);
-            }
-            state
-        });
+        let state = state.get_or_insert_with(|| Box::new(start.state(controller, &row.sensed)));
         // what the board refuses is refused here, too
         if row.heard {
             let _ = controller.accept(state, Command::KeepAlive);
         }
         // one a tick lets light out
         for order in orders.iter().filter(|order| !(row.void && order.ask.lights())) {
-            let _ = controller.accept(state, command_of(order.ask));
+            let _ = controller.accept(state, order.ask.command());
         }
         if row.disarmed {
             let _ = controller.accept(state, Command::Disarm);
         }
         let told = controller.tick(state, &row.sensed);
         differs(tick, row, &told).map_or(Ok(told), |difference| Err(Trouble::Diverged(difference)))
-    }
-}
-
-fn command_of(ask: Ask) -> Command {
-    match ask {
-        Ask::Arm { acknowledges, .. } => Command::Arm { acknowledges },
-        Ask::Command(command) => command,
     }
 }
 

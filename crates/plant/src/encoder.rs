@@ -1,8 +1,7 @@
 use tracelight_maths::sin;
 use tracelight_rig::Measurement;
+use tracelight_rig::wire::{LAST_STAMP, STAMPS_A_TICK};
 
-/// Steps of an edge's stamp.
-const STAMPS_A_TICK: f64 = 65536.0;
 /// Number of edges after which a quadrature encoder's misplacements repeat.
 const PHASES: usize = 4;
 
@@ -140,8 +139,9 @@ impl Encoder {
             let left = (to_rad - edge_rad) / (to_rad - from_rad);
             let age = end_age_ticks + left.clamp(0.0, 1.0) * length_ticks;
             // a stamp is a counter's value: these are what a wire carries, and finer than any timer's
-            let steps = (age * STAMPS_A_TICK).floor().clamp(0.0, STAMPS_A_TICK - 3.0);
-            self.edge_age_ticks = Some((steps / STAMPS_A_TICK) as f32);
+            let most = f64::from(STAMPS_A_TICK);
+            let steps = (age * most).floor().clamp(0.0, LAST_STAMP.into());
+            self.edge_age_ticks = Some((steps / most) as f32);
         }
     }
 

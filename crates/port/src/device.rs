@@ -9,7 +9,7 @@ use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Stop};
 
 use crate::port::Port;
-use crate::session::new_session;
+use crate::session::{micros, new_session};
 
 /// For how long it waits for bytes before it looks what else is to be done.
 const WAIT: Duration = Duration::from_millis(1);
@@ -91,10 +91,6 @@ impl Device {
             self.host.connect_again(new_session());
         }
     }
-}
-
-fn micros(since: Instant) -> u64 {
-    u64::try_from(since.elapsed().as_micros()).unwrap_or(u64::MAX)
 }
 
 impl Rig for Device {

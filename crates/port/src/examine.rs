@@ -3,14 +3,12 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use tracelight_rig::wire::{
-    FromBoard, Greeting, MOST_PACKET, Packets, ToBoard, VERSION, connection_of, packed,
-};
+use tracelight_rig::wire::{FromBoard, Greeting, MOST_PACKET, Packets, ToBoard, VERSION, connection_of};
 use tracelight_task::{Failure, Stop};
 
 use crate::greeting::Examined;
 use crate::port::Port;
-use crate::session::new_session;
+use crate::session::{micros, new_session};
 
 /// For how long a board may think about a greeting, and how often it is greeted.
 const PATIENCE: Duration = Duration::from_millis(300);
@@ -55,7 +53,7 @@ impl Line {
 
     fn say(&mut self, said: &ToBoard<'_>) -> Result<(), Failure> {
         let mut out = [0; MOST_PACKET];
-        let length = packed(said.body(connection_of(self.session)).bytes(), &mut out);
+        let length = said.packed(connection_of(self.session), &mut out);
         self.port.write(&out[..length]).map_err(|e| self.gone(&e))
     }
 
@@ -101,7 +99,7 @@ impl Line {
     }
 
     fn round_trip(&mut self) -> Result<Option<Duration>, Failure> {
-        let host_us = u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX);
+        let host_us = micros(self.began);
         let asked = Instant::now();
         self.say(&ToBoard::KeepAlive { host_us })?;
         let is_its = |said: FromBoard<'_>| {

@@ -45,3 +45,6 @@ pub const TICK_S: f32 = 1e-3;
 
 /// [`TICK_S`] for code that computes in `f64`: exactly one millisecond.
 pub const TICK_F64_S: f64 = 1e-3;
+
+/// [`TICK_S`] as boards tell it, ns.
+pub const TICK_NS: u32 = 1_000_000;

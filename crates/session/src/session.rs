@@ -344,9 +344,8 @@ impl<R: Rig> Session<R> {
     }
 
     fn clear(&mut self) {
-        let acknowledges = self.told.fault_number;
         self.send(Command::KeepAlive);
-        self.send(Command::Acknowledge { fault: acknowledges });
+        self.send(Command::Acknowledge { fault: self.told.fault_number });
     }
 
     /// Turns the head in the dark, from where it rests; of one that is not homed nobody knows where that is but by what it was told before.

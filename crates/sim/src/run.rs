@@ -79,6 +79,11 @@ impl Run {
     }
 }
 
+/// What a head without encoders is told besides its actuation: where its joints are to be, and where it was homed.
+const fn open_loop<const SEGMENTS: usize>(state: &State<SEGMENTS>) -> (PanTilt<Setpoint>, PanTilt<i32>) {
+    (*state.told(), *state.home())
+}
+
 /// What drives the head.
 #[derive(Clone, Debug)]
 enum Brain {
@@ -226,7 +231,7 @@ impl SimulatedRig {
         self.stretch += self.stretch_per_tick;
         let (controller, state) = &mut **brain;
         let telemetry = controller.tick(state, &self.sensed);
-        let open_loop = (*state.told(), *state.home());
+        let open_loop = open_loop(state);
         self.told = telemetry;
         let tick = Tick { asked: self.asked(&telemetry), telemetry, ..self.truth() };
         self.exchange(&telemetry.actuation, &open_loop);

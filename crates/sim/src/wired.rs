@@ -19,8 +19,6 @@ const TICK_US: u64 = 1000;
 const ANSWERED_US: u64 = 900;
 /// What comes before a tick begins comes at the end of the one before it, µs.
 pub(crate) const LAST_US: u16 = 999;
-/// Kind of board: none that anybody can buy.
-const EMULATED: u16 = 0;
 /// Bytes that a board hands over in a tick at most: what USB carries.
 const MOST_BYTES: usize = 8 * MOST_PACKET;
 
@@ -49,7 +47,7 @@ impl Wired {
         let config = Config { lead_ticks, ..config };
         let mut wired = Self {
             host: Host::new(config, 1),
-            board: Box::new(Firmware::new(identity(capabilities, Reset::PowerUp))),
+            board: Box::new(Firmware::new(Identity::emulated(capabilities, Reset::PowerUp))),
             to_board: Way::new(link, seed),
             to_host: Way::new(link, seed.wrapping_add(1)),
             now_us: 0,
@@ -128,7 +126,7 @@ impl Wired {
     /// The board loses power for a moment; the host configures it anew.
     pub(crate) fn lose_power(&mut self) {
         self.capabilities.absolute = false;
-        *self.board = Firmware::new(identity(self.capabilities, Reset::BrownOut));
+        *self.board = Firmware::new(Identity::emulated(self.capabilities, Reset::BrownOut));
         self.sessions += 1;
         self.host = Host::new(self.config, self.sessions);
         self.shake_hands();
@@ -139,8 +137,8 @@ impl Wired {
         self.now_us < self.stalled_until_us
     }
 
-    /// A millisecond of both: the board senses this, and does that. `exchange` lets the head do it.
-    pub(crate) fn tick(&mut self, sensed: &Sensed, exchange: impl FnOnce(&Firmware, &Actuation)) {
+    /// A millisecond of both: the board senses this, and does that.
+    pub(crate) fn tick(&mut self, sensed: &Sensed) -> Actuation {
         if self.unplugged_until_us.is_some_and(|until| until <= self.now_us) {
             self.unplugged_until_us = None;
             self.to_board.cut(false);
@@ -156,7 +154,6 @@ impl Wired {
         let came = self.to_board.come(self.now_us);
         self.board.take(&came, LAST_US);
         let actuation = self.board.tick(sensed);
-        exchange(&self.board, &actuation);
         let said = said(&mut self.board);
         let answered_us = self.now_us + ANSWERED_US;
         self.to_host.send(answered_us, &said);
@@ -165,6 +162,7 @@ impl Wired {
             self.host.take(&came, answered_us);
         }
         self.now_us += TICK_US;
+        actuation
     }
 
     /// What the host tells when it can drive the head no more: the last it knew, dark, with the fault that it is.
@@ -191,10 +189,6 @@ impl Wired {
             ..*last
         })
     }
-}
-
-pub(crate) fn identity(capabilities: Capabilities, reset: Reset) -> Identity {
-    Identity { firmware: [0, 1, 0], source: [0; 8], board: EMULATED, id: *b"emulated", capabilities, reset }
 }
 
 /// What a board says.

@@ -1,6 +1,7 @@
 //! What a board says.
 
 use super::bytes::{Body, MOST_BODY, Rest};
+use super::packet::{MOST_PACKET, packed};
 use super::row::{Row, RowBytes};
 use super::{MAGIC, head};
 use crate::{Capabilities, Exceeded, Fault, FaultRecord, Inputs, Joint, PanTilt};
@@ -122,16 +123,8 @@ pub enum WrongConfiguration {
 /// Rows of ticks that follow each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rows<'a> {
-    /// Tick of the first one.
-    pub first_tick: u32,
-    /// Sequence number of the order that comes next.
-    pub wanted: u16,
-    /// Segments that there is room for.
-    pub free: u16,
-    /// Number of the last Disarm that acted.
-    pub disarm: u16,
-    /// How many faults were latched since power-up: what an Arm acknowledges.
-    pub fault_number: u32,
+    /// What comes before them.
+    pub header: RowsHeader,
     /// How many rows.
     pub count: u8,
     /// Their bytes, one after the other.
@@ -144,7 +137,7 @@ impl<'a> Rows<'a> {
         let mut rest = Rest(self.bytes);
         let rows = core::iter::from_fn(move || Row::read(&mut rest, inputs));
         (0..u32::from(self.count)).zip(rows).map({
-            let first_tick = self.first_tick;
+            let first_tick = self.header.first_tick;
             move |(at, row)| (first_tick.wrapping_add(at), row)
         })
     }
@@ -163,21 +156,14 @@ impl<'a> Rows<'a> {
             }
             count += 1;
         }
-        let RowsHeader { first_tick, wanted, free, disarm, fault_number } = *header;
         let mut body = Body::new();
-        head(&mut body, kind::ROWS, connection, 0);
-        body.u32(first_tick);
-        body.u16(wanted);
-        body.u16(free);
-        body.u16(disarm);
-        body.u32(fault_number);
-        body.u8(count);
+        header.write(&mut body, connection, count);
         rows.into_iter().take(count.into()).for_each(|row| body.slice(row.bytes()));
         (body, count)
     }
 }
 
-/// What rows begin with: see [`Rows`].
+/// What rows begin with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RowsHeader {
     /// Tick of the first one.
@@ -188,8 +174,31 @@ pub struct RowsHeader {
     pub free: u16,
     /// Number of the last Disarm that acted.
     pub disarm: u16,
-    /// How many faults were latched since power-up.
+    /// How many faults were latched since power-up: what an Arm acknowledges.
     pub fault_number: u32,
+}
+
+impl RowsHeader {
+    fn write(&self, body: &mut Body, connection: u8, count: u8) {
+        let Self { first_tick, wanted, free, disarm, fault_number } = *self;
+        head(body, kind::ROWS, connection, 0);
+        body.u32(first_tick);
+        body.u16(wanted);
+        body.u16(free);
+        body.u16(disarm);
+        body.u32(fault_number);
+        body.u8(count);
+    }
+
+    fn read(rest: &mut Rest<'_>) -> Option<Self> {
+        Some(Self {
+            first_tick: rest.u32()?,
+            wanted: rest.u16()?,
+            free: rest.u16()?,
+            disarm: rest.u16()?,
+            fault_number: rest.u32()?,
+        })
+    }
 }
 
 /// Bytes before the first row.
@@ -227,13 +236,7 @@ impl<'a> FromBoard<'a> {
                 body.u16(*tick_us);
             }
             Self::Rows(rows) => {
-                head(&mut body, kind::ROWS, 0);
-                body.u32(rows.first_tick);
-                body.u16(rows.wanted);
-                body.u16(rows.free);
-                body.u16(rows.disarm);
-                body.u32(rows.fault_number);
-                body.u8(rows.count);
+                rows.header.write(&mut body, connection, rows.count);
                 body.slice(rows.bytes);
             }
             Self::Fault(record) => {
@@ -248,6 +251,11 @@ impl<'a> FromBoard<'a> {
         body
     }
 
+    /// As a packet of a connection; how long it is.
+    pub fn packed(&self, connection: u8, out: &mut [u8; MOST_PACKET]) -> usize {
+        packed(self.body(connection).bytes(), out)
+    }
+
     /// What a body says, and in which connection; `None` if that is nothing that is known, or anything about it is not as it should be.
     pub fn read(body: &'a [u8]) -> Option<(Self, u8)> {
         let mut rest = Rest(body);
@@ -260,14 +268,12 @@ impl<'a> FromBoard<'a> {
             }),
             kind::PONG => Self::Pong { host_us: rest.u64()?, tick: rest.u32()?, tick_us: rest.u16()? },
             kind::ROWS => {
-                let (first_tick, wanted) = (rest.u32()?, rest.u16()?);
-                let (free, disarm) = (rest.u16()?, rest.u16()?);
-                let (fault_number, count) = (rest.u32()?, rest.u8()?);
+                let (header, count) = (RowsHeader::read(&mut rest)?, rest.u8()?);
                 let bytes = rest.all();
                 if RowBytes::count_in(bytes) != Some(count.into()) {
                     return None;
                 }
-                Self::Rows(Rows { first_tick, wanted, free, disarm, fault_number, count, bytes })
+                Self::Rows(Rows { header, count, bytes })
             }
             kind::FAULT => Self::Fault(read_fault(&mut rest)?),
             kind::LOG => Self::Log(core::str::from_utf8(rest.all()).ok()?),

@@ -24,7 +24,7 @@ pub use bytes::{Body, MOST_BODY};
 pub use crc::crc32;
 pub use from_board::{Configured, FromBoard, Greeting, Reset, Rows, RowsHeader, WrongConfiguration};
 pub use packet::{MOST_PACKET, Packets, packed};
-pub use row::{Row, RowBytes, as_told};
+pub use row::{LAST_STAMP, Row, RowBytes, STAMPS_A_TICK, as_told};
 pub use to_board::{Ask, Order, ToBoard};
 
 /// Version of this protocol. Who speaks another major one is refused; the smaller minor one counts.

@@ -34,10 +34,13 @@ pub struct Row {
 const BYTES: usize = 32;
 /// Bytes of a row with them.
 const MOST_BYTES: usize = BYTES + 12;
-/// Stamp of an encoder that has none, and one that is not within a tick; the others are 65536ths of it.
+/// Steps of an edge's stamp in a tick, and the last of them that says when the edge was.
+pub const STAMPS_A_TICK: f32 = 65536.0;
+/// See [`STAMPS_A_TICK`].
+pub const LAST_STAMP: u16 = WRONG_STAMP - 1;
+/// Stamp of an encoder that has none, and one that is not within a tick.
 const NO_STAMP: u16 = u16::MAX;
 const WRONG_STAMP: u16 = u16::MAX - 1;
-const STAMPS_A_TICK: f32 = 65536.0;
 /// Steps of a tick's length; 0 where it is not measured.
 const STEPS_A_TICK: f32 = 128.0;
 
@@ -77,7 +80,7 @@ fn stamp(age_ticks: Option<f32>) -> u16 {
     match age_ticks {
         None => NO_STAMP,
         // the cast is down
-        Some(age) if (0.0..1.0).contains(&age) => ((age * STAMPS_A_TICK) as u16).min(WRONG_STAMP - 1),
+        Some(age) if (0.0..1.0).contains(&age) => ((age * STAMPS_A_TICK) as u16).min(LAST_STAMP),
         Some(_) => WRONG_STAMP,
     }
 }

@@ -1,6 +1,7 @@
 //! What a host says.
 
 use super::bytes::{Body, Rest};
+use super::packet::{MOST_PACKET, packed};
 use super::{MAGIC, head};
 use crate::{Command, PanTilt, RateLimit, Segment};
 
@@ -86,6 +87,14 @@ impl Ask {
     pub const fn lights(&self) -> bool {
         matches!(self, Self::Arm { .. } | Self::Command(Command::Point(_)))
     }
+
+    /// What a controller is told that obeys it.
+    pub const fn command(&self) -> Command {
+        match *self {
+            Self::Arm { acknowledges, .. } => Command::Arm { acknowledges },
+            Self::Command(command) => command,
+        }
+    }
 }
 
 mod kind {
@@ -152,6 +161,11 @@ impl<'a> ToBoard<'a> {
             }
         }
         body
+    }
+
+    /// As a packet of a connection; how long it is.
+    pub fn packed(&self, connection: u8, out: &mut [u8; MOST_PACKET]) -> usize {
+        packed(self.body(connection).bytes(), out)
     }
 
     /// What a body says, and in which connection; `None` if that is nothing that is known, or anything about it is not as it should be.

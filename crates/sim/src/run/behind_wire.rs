@@ -2,14 +2,15 @@
 
 use std::collections::VecDeque;
 
+use tracelight_board::Identity;
 use tracelight_device::Host;
 use tracelight_rig::wire::Reset;
-use tracelight_rig::{Actuation, Capabilities, TICK_F64_S};
+use tracelight_rig::{Capabilities, TICK_F64_S};
 
-use super::{Brain, SimulatedRig, Tick};
+use super::{Brain, SimulatedRig, Tick, open_loop};
 use crate::RigConfig;
 use crate::link::{Emulation, LinkSettings};
-use crate::wired::{Firmware, LAST_US, Wired, identity, said};
+use crate::wired::{Firmware, LAST_US, Wired, said};
 
 impl SimulatedRig {
     /// Puts a wire and a board there if the rig is to have them.
@@ -49,7 +50,7 @@ impl SimulatedRig {
 
     /// Gives it a board whose host is another program.
     pub fn served(self) -> ServedRig {
-        let board = Box::new(Firmware::new(identity(self.capabilities(), Reset::PowerUp)));
+        let board = Box::new(Firmware::new(Identity::emulated(self.capabilities(), Reset::PowerUp)));
         ServedRig { rig: self, board }
     }
 
@@ -93,15 +94,10 @@ impl SimulatedRig {
         let truth = self.truth();
         let sensed = self.sensed;
         let Brain::Wired(wired, unseen) = &mut self.brain else { return };
-        let mut done = (Actuation::default(), Default::default());
-        wired.tick(&sensed, |board, actuation| {
-            done = (
-                *actuation,
-                board.machine().state().map(|state| (*state.told(), *state.home())).unwrap_or_default(),
-            );
-        });
-        unseen.push_back((wired.board().machine().tick_number().wrapping_sub(1), truth));
-        let (actuation, open_loop) = done;
+        let actuation = wired.tick(&sensed);
+        let machine = wired.board().machine();
+        let open_loop = machine.state().map(open_loop).unwrap_or_default();
+        unseen.push_back((machine.tick_number().wrapping_sub(1), truth));
         self.exchange(&actuation, &open_loop);
     }
 
@@ -135,8 +131,8 @@ impl ServedRig {
     pub fn pass(&mut self, came: &[u8], may_say: bool) -> Vec<u8> {
         self.board.take(came, LAST_US);
         let actuation = self.board.tick(&self.rig.sensed);
-        let told = self.board.machine().state().map(|state| (*state.told(), *state.home()));
-        self.rig.exchange(&actuation, &told.unwrap_or_default());
+        let open_loop = self.board.machine().state().map(open_loop).unwrap_or_default();
+        self.rig.exchange(&actuation, &open_loop);
         if may_say { said(&mut self.board) } else { Vec::new() }
     }
 

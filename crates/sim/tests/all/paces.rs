@@ -155,9 +155,7 @@ fn check_stops(stop: Command, most_dark_after: Option<usize>, times: usize) {
             let interrupted = most_dark_after.is_none() && plan.points[at as usize].lit;
             assert!(!interrupted, "{name} at {when}: stopped at {at} on a stroke");
             let ink = ink(&plan, &ran);
-            worst.missing_mm = worst.missing_mm.max(ink.missing_mm);
-            worst.doubled_mm = worst.doubled_mm.max(ink.doubled_mm);
-            worst.off_mm = worst.off_mm.max(ink.off_mm);
+            worst = worst.or_worse(&ink);
             let off = ran.ticks.iter().filter(|t| t.light).map(off_mm).fold(0.0, f64::max);
             assert!(off < 1.0, "{name} at {when}: {off} mm");
         }

@@ -78,9 +78,7 @@ fn who_comes_back_in_time_finds_the_job_going_on_where_its_light_was() {
                 let held = ran.ticks.iter().filter(|t| t.telemetry.phase == Phase::Holding).count();
                 assert_eq!(held > 0, silent > SILENT, "{what}: held for {held} ticks");
                 let ink = ink(&plan, &ran);
-                worst.missing_mm = worst.missing_mm.max(ink.missing_mm);
-                worst.doubled_mm = worst.doubled_mm.max(ink.doubled_mm);
-                worst.off_mm = worst.off_mm.max(ink.off_mm);
+                worst = worst.or_worse(&ink);
                 let off = ran.ticks.iter().filter(|t| t.light).map(off_mm).fold(0.0, f64::max);
                 assert!(off < 1.0, "{what}: {off} mm");
             }

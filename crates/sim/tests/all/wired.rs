@@ -108,9 +108,7 @@ fn through_a_bad_wire_all_is_drawn_and_nothing_else() {
             let host = rig.host().unwrap();
             assert_eq!(host.stage(), Stage::Running, "{name}, {link:?}: {} ticks", ran.ticks.len());
             let ink = check_ink(&format!("{name}, {link:?}"), &ran, &plan, &before);
-            worst.missing_mm = worst.missing_mm.max(ink.missing_mm);
-            worst.doubled_mm = worst.doubled_mm.max(ink.doubled_mm);
-            worst.off_mm = worst.off_mm.max(ink.off_mm);
+            worst = worst.or_worse(&ink);
             let held = ran.ticks.iter().filter(|t| t.telemetry.phase == Phase::Holding).count();
             println!(
                 "{name}, {link:?}: {} ticks, held {held}, {} packets spoilt, {ink:?}",
@@ -367,9 +365,7 @@ fn a_day_of_a_bad_wire_draws_every_house_whole() {
             }
         });
         let ink = check_ink(&format!("house {houses}"), &ran, &plan, &before);
-        worst.missing_mm = worst.missing_mm.max(ink.missing_mm);
-        worst.doubled_mm = worst.doubled_mm.max(ink.doubled_mm);
-        worst.off_mm = worst.off_mm.max(ink.off_mm);
+        worst = worst.or_worse(&ink);
         houses += 1;
         rig.send(Command::Disarm).unwrap();
         rig.step();

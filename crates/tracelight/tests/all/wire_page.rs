@@ -193,7 +193,8 @@ fn every_frame_on_the_page_is_read_as_what_it_says() {
             let Some((FromBoard::Rows(read), CONNECTION)) = FromBoard::read(&bodies[0]) else {
                 panic!("no rows")
             };
-            assert_eq!((read.first_tick, read.wanted, read.free), (65, 2, 380));
+            let RowsHeader { first_tick, wanted, free, .. } = read.header;
+            assert_eq!((first_tick, wanted, free), (65, 2, 380));
             assert!(read.rows(inputs()).eq((65..).zip(rows())));
             assert_eq!(rows().map(|row| row.told()).map(|told: RowBytes| told.bytes().len()), [32, 32]);
         } else {

@@ -20,6 +20,17 @@ pub(crate) struct Ink {
     pub(crate) off_mm: f64,
 }
 
+impl Ink {
+    /// The worse of both in each.
+    pub(crate) fn or_worse(self, other: &Self) -> Self {
+        Self {
+            missing_mm: self.missing_mm.max(other.missing_mm),
+            doubled_mm: self.doubled_mm.max(other.doubled_mm),
+            off_mm: self.off_mm.max(other.off_mm),
+        }
+    }
+}
+
 /// Compares the light of a run with the lines of its plan.
 pub(crate) fn ink(plan: &Plan, run: &Run) -> Ink {
     let lines = Lines::of(plan);
