@@ -2,7 +2,7 @@
 
 use tracelight_control::{Config, Controller, State};
 use tracelight_rig::wire::{Ask, Configured, Order, Row, RowBytes, as_told, is_before};
-use tracelight_rig::{Actuation, Command, FaultRecord, Phase, Sensed, Telemetry};
+use tracelight_rig::{Actuation, Command, FaultRecord, Joint, Phase, Sensed, Telemetry};
 
 use crate::configuration::{MOST_CONFIGURATION, read_configuration, write_configuration};
 use crate::start::Start;
@@ -40,8 +40,6 @@ pub struct NewConfiguration {
     pub config: Config,
     /// Whether the encoders know where they are.
     pub is_absolute: bool,
-    /// Whether it is the one that was in force before, by which a head that was homed stays so.
-    pub is_same: bool,
     /// Its checksum.
     pub crc: u32,
     /// Hash of its law.
@@ -172,17 +170,26 @@ impl<const SEGMENTS: usize> Machine<SEGMENTS> {
 
     /// Begins anew with a configuration. A head that was homed is told where it stands, if it is held to be where it was; what is known of motors and light is kept.
     fn begin(&mut self, new: &NewConfiguration, sensed: &Sensed, tick: u32) -> Configured {
-        let &NewConfiguration { config, is_absolute, is_same, crc, law } = new;
+        let &NewConfiguration { config, is_absolute, crc, law } = new;
         let before = self.state();
-        let home = before.filter(|_| is_same && !is_absolute).and_then(|state| state.homed_at(sensed));
+        let is_alike =
+            self.running.as_ref().is_some_and(|(before, _)| counts_alike(before.config(), &config));
+        let home = before.filter(|_| is_alike && !is_absolute).and_then(|state| state.homed_at(sensed));
         let carried = before.map(State::carried);
         let controller = Controller::new(config);
         let state = Start { tick, is_absolute, home, carried }.state(&controller, sensed);
         let home = home.filter(|_| state.is_homed());
         self.running = Some((controller, state));
         self.void_before = None;
-        Configured { crc, tick, law, home, heat: carried.map(|carried| carried.heat) }
+        let shut_ticks = carried.map_or(u32::MAX, |carried| carried.shut_ticks);
+        Configured { crc, tick, law, home, heat: carried.map(|carried| carried.heat), shut_ticks }
     }
+}
+
+/// Whether counts mean the same angles by both configurations, so that a head that was homed by one is by the other.
+fn counts_alike(before: &Config, after: &Config) -> bool {
+    let is_alike = |j: Joint| before.axes[j].count_rad == after.axes[j].count_rad;
+    before.drive.is_open_loop() == after.drive.is_open_loop() && is_alike(Joint::Pan) && is_alike(Joint::Tilt)
 }
 
 impl<const SEGMENTS: usize> Default for Machine<SEGMENTS> {

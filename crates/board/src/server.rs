@@ -35,7 +35,7 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Of a board that is emulated: kind 0, which nobody can buy.
+    /// Of a board that is emulated.
     pub fn emulated(capabilities: Capabilities, reset: Reset) -> Self {
         let number = |text: &str| text.parse().unwrap_or_default();
         let firmware = [
@@ -43,7 +43,14 @@ impl Identity {
             number(env!("CARGO_PKG_VERSION_MINOR")),
             number(env!("CARGO_PKG_VERSION_PATCH")),
         ];
-        Self { firmware, source: [0; 8], board: 0, id: *b"emulated", capabilities, reset }
+        Self {
+            firmware,
+            source: [0; 8],
+            board: Greeting::EMULATED,
+            id: Greeting::EMULATED_ID,
+            capabilities,
+            reset,
+        }
     }
 }
 
@@ -229,7 +236,6 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
         self.inbox.configuration = Some(NewConfiguration {
             config,
             is_absolute: self.identity.capabilities.absolute,
-            is_same: self.configuration == Some(crc),
             crc,
             law: law_hash(&config),
         });

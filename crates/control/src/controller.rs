@@ -61,7 +61,7 @@ impl Controller {
     /// Has a state that has just begun remember what the one before it knew of the head; where light fell then is not known any more, so it may have been anywhere.
     pub fn carry<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, carried: &Carried) {
         state.watch.set_heat(carried.heat);
-        state.budget = LightBudget::spent(&self.config);
+        state.budget = LightBudget::spent(&self.config, carried.shut_ticks);
     }
 
     /// Takes a command, or gives it back when the queue is full, or when a head is to be homed that is armed, moves, or can

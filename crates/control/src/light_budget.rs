@@ -33,6 +33,8 @@ const LEAK: f32 = 0.1;
 const WIDTH: f32 = 4.1;
 /// Share of the budget down to which a square that spent it must leak before there is light again: a relay is not to chatter at the brim.
 const OPEN_AGAIN: f32 = 0.5;
+/// A dark time after which nothing is left of any budget, ticks.
+const LONG_DARK_TICKS: u32 = 1 << 20;
 /// Ticks a laser may shine longer than its relay is believed to let it.
 const SLACK_TICKS: u32 = 2;
 /// How often it is looked up at most what any square holds, ticks: it takes as long as some ticks else.
@@ -95,13 +97,27 @@ impl LightBudget {
         }
     }
 
-    /// Of a head of which nobody knows where it was lit before: it may have been anywhere, for as long as it may be.
-    pub(crate) fn spent(config: &Config) -> Self {
-        let mut budget = Self { recent: RecentLight::FULL, ..Self::new() };
+    /// Of a head whose gate fell that long ago, and of which nobody knows where it was lit before: it may have been anywhere, for as long as it may be.
+    pub fn spent(config: &Config, shut_ticks: u32) -> Self {
+        // some minutes after it nothing is left
+        let dark_ticks = shut_ticks.saturating_sub(tail_ticks(config)).min(LONG_DARK_TICKS);
+        let recent = RecentLight::full_before(dark_ticks);
+        let mut budget = Self { now: dark_ticks, recent, shut_ticks, ..Self::new() };
         budget.beneath.charge(0, config.standing_ticks, most(config));
         budget.bound = most(config);
         budget.next_bound = budget.bound;
         budget
+    }
+
+    /// How long ago the gate fell, ticks; `u32::MAX` of one that was never open.
+    pub const fn shut_ticks(&self) -> u32 {
+        self.shut_ticks
+    }
+
+    /// In how many dark ticks there may be light again where none was charged yet; 0 where there may be now.
+    pub fn opens_in_ticks(&self, config: &Config) -> u32 {
+        let left = self.beneath.held(self.now) - OPEN_AGAIN * most(config);
+        if self.beneath.shut && left > 0.0 { (left / LEAK) as u32 + 1 } else { 0 }
     }
 
     /// One tick passes. `gate` is whether light was wanted in the last one, `seen` whether any is seen; the joints are at `angle_rad`,

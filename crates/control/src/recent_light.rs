@@ -18,8 +18,20 @@ pub(crate) struct RecentLight {
 
 impl RecentLight {
     pub(crate) const NONE: Self = Self { lit: [0; PARTS + 1], part: 0, passed: 0, sum: 0 };
+    /// As much as there may be, that many ticks ago.
+    pub(crate) const fn full_before(ticks: u32) -> Self {
+        let parts = ticks as usize / PART_TICKS as usize;
+        // the oldest light leaves with the last part
+        let last = PARTS - Self::FULL.part;
+        match parts {
+            _ if parts > PARTS + 1 => Self::NONE,
+            _ if parts > last => Self { part: Self::FULL.part + last, ..Self::FULL },
+            _ => Self { part: Self::FULL.part + parts, ..Self::FULL },
+        }
+    }
+
     /// As much as there may be, just now.
-    pub(crate) const FULL: Self = {
+    const FULL: Self = {
         let mut lit = [0; PARTS + 1];
         let mut part = 0;
         while part < PARTS / 10 {
@@ -52,5 +64,32 @@ impl RecentLight {
     /// Ticks of light that are left.
     pub(crate) const fn left_ticks(&self) -> u32 {
         Self::MOST_TICKS.saturating_sub(self.sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_that_may_have_been_before_a_dark_time_leaves_no_sooner_than_it_would_tick_by_tick() {
+        let mut passed = RecentLight::FULL;
+        let mut dark = 0;
+        for ticks in (0..11_000).step_by(37) {
+            while dark < ticks {
+                passed.tick(false);
+                dark += 1;
+            }
+            let mut at_once = RecentLight::full_before(ticks);
+            let mut still = passed;
+            for after in (0..10_400).step_by(100) {
+                assert!(at_once.left_ticks() <= still.left_ticks(), "{ticks} + {after}");
+                (0..100).for_each(|_| at_once.tick(false));
+                (0..100).for_each(|_| still.tick(false));
+            }
+            assert!(at_once.is_dark() && still.is_dark(), "{ticks}");
+        }
+        assert_eq!(RecentLight::full_before(0).left_ticks(), 0);
+        assert!(RecentLight::full_before(10_300).is_dark() && RecentLight::full_before(u32::MAX).is_dark());
     }
 }

@@ -2,6 +2,7 @@
 
 use tracelight_rig::{Fault, Joint, PanTilt, Phase, Sensed, Setpoint};
 
+use crate::config::Config;
 use crate::creep::Pace;
 use crate::estimate::Estimate;
 use crate::light_budget::LightBudget;
@@ -37,6 +38,8 @@ pub struct State<const SEGMENTS: usize = QUEUE_LENGTH> {
 pub struct Carried {
     /// Heat of the motors, as a share of what full drive makes of them.
     pub heat: PanTilt<f32>,
+    /// How long ago the laser's gate fell, ticks; `u32::MAX` of one that was never open.
+    pub shut_ticks: u32,
 }
 
 impl<const SEGMENTS: usize> State<SEGMENTS> {
@@ -75,7 +78,12 @@ impl<const SEGMENTS: usize> State<SEGMENTS> {
 
     /// What a controller that begins anew with the same head must not forget.
     pub fn carried(&self) -> Carried {
-        Carried { heat: self.watch.heat() }
+        Carried { heat: self.watch.heat(), shut_ticks: self.budget.shut_ticks() }
+    }
+
+    /// In how many ticks there may be light again where none fell yet, as after a controller that knew where it fell; 0 where there may be now.
+    pub fn opens_in_ticks(&self, config: &Config) -> u32 {
+        self.budget.opens_in_ticks(config)
     }
 
     /// Whether a dot is wanted.

@@ -134,6 +134,11 @@ impl Host {
         self.twin.as_ref()
     }
 
+    /// In how many dark ticks the board may light again where it did not yet: one that is configured anew does not know where it was lit before.
+    pub fn opens_in_ticks(&self) -> u32 {
+        self.twin.as_ref().map_or(0, Twin::opens_in_ticks)
+    }
+
     /// For how long nothing came, µs.
     pub fn silent_us(&self, now_us: u64) -> u64 {
         self.times.heard.map_or(0, |heard| now_us.saturating_sub(heard))
@@ -390,7 +395,7 @@ impl Host {
 
     /// The configuration is in force.
     fn begin(&mut self, configured: Configured) -> Result<(), Trouble> {
-        let Configured { crc, tick, law, home, heat } = configured;
+        let Configured { crc, tick, law, home, heat, shut_ticks } = configured;
         if crc != crc32(&self.configuration) {
             // of an earlier connection
             return Ok(());
@@ -400,7 +405,7 @@ impl Host {
             return Err(Trouble::Law { host, board: law });
         }
         let is_absolute = self.board.is_some_and(|board| board.capabilities.absolute);
-        let carried = heat.map(|heat| Carried { heat });
+        let carried = heat.map(|heat| Carried { heat, shut_ticks });
         self.twin = Some(Twin::new(self.config, Start { tick, is_absolute, home, carried }));
         self.next_tick = tick;
         self.rows.clear();

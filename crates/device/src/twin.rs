@@ -27,6 +27,11 @@ impl Twin {
         self.state.as_deref()
     }
 
+    /// In how many dark ticks the board may light again where it did not yet, as far as is known.
+    pub(crate) fn opens_in_ticks(&self) -> u32 {
+        self.state().map_or(0, |state| state.opens_in_ticks(self.controller.config()))
+    }
+
     /// Whether the board is disarmed, as far as is known, and no dot is wanted.
     pub(crate) fn is_off(&self, told: &Telemetry) -> bool {
         told.phase == Phase::Dark && self.state().is_some_and(|state| !state.is_pointing())

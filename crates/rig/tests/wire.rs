@@ -173,6 +173,7 @@ impl Dice {
                     law: self.u32(),
                     home: self.flag().then(|| PanTilt::new(self.u32() as i32, self.u32() as i32)),
                     heat: self.flag().then(|| PanTilt::new(self.f32(), self.f32())),
+                    shut_ticks: self.u32(),
                 }),
             }),
             2 => FromBoard::Pong { host_us: self.roll(), tick: self.u32(), tick_us: self.u32() as u16 },

@@ -63,6 +63,25 @@ pub struct Greeting {
     pub nonce: u32,
 }
 
+impl Greeting {
+    /// Kind of a board that is emulated, head and all: nobody can buy it.
+    pub const EMULATED: u16 = 0;
+    /// Kind of a Raspberry Pi Pico 2.
+    pub const PICO_2: u16 = 1;
+    /// Number of boards that are emulated, of whatever kind they say that they are.
+    pub const EMULATED_ID: [u8; 8] = *b"emulated";
+
+    /// Whether board and head are emulated: nothing moves, no light falls.
+    pub fn is_emulated(&self) -> bool {
+        self.board == Self::EMULATED || self.id == Self::EMULATED_ID
+    }
+
+    /// Whether a person must arm its head: one that does not say that it is emulated, and one that is there to practise with.
+    pub const fn wants_a_person(&self) -> bool {
+        self.board != Self::EMULATED
+    }
+}
+
 /// Why a board started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -100,6 +119,8 @@ pub struct Configured {
     pub home: Option<PanTilt<i32>>,
     /// Heat of the motors, of a head that another configuration drove before; where that lit is not known.
     pub heat: Option<PanTilt<f32>>,
+    /// How long ago its gate fell then, ticks; `u32::MAX` if it was never open.
+    pub shut_ticks: u32,
 }
 
 /// Why a configuration is not in force.
@@ -348,13 +369,15 @@ impl Configured {
         let heat = self.heat.unwrap_or_default();
         body.f32(heat.pan);
         body.f32(heat.tilt);
+        body.u32(self.shut_ticks);
     }
 
     fn read(rest: &mut Rest<'_>) -> Option<Self> {
         let (crc, tick, law, keeps) = (rest.u32()?, rest.u32()?, rest.u32()?, rest.flag()?);
         let home = PanTilt { pan: rest.i32()?, tilt: rest.i32()? };
         let (is_hot, heat) = (rest.flag()?, PanTilt { pan: rest.f32()?, tilt: rest.f32()? });
-        Some(Self { crc, tick, law, home: keeps.then_some(home), heat: is_hot.then_some(heat) })
+        let shut_ticks = rest.u32()?;
+        Some(Self { crc, tick, law, home: keeps.then_some(home), heat: is_hot.then_some(heat), shut_ticks })
     }
 }
 

@@ -73,7 +73,14 @@ fn from_board() -> Vec<(&'static str, FromBoard<'static>)> {
         tick: 60,
         nonce: 2,
     };
-    let configured = Configured { crc: 0x1234_5678, tick: 61, law: 0x0BAD_CAFE, home: None, heat: None };
+    let configured = Configured {
+        crc: 0x1234_5678,
+        tick: 61,
+        law: 0x0BAD_CAFE,
+        home: None,
+        heat: None,
+        shut_ticks: u32::MAX,
+    };
     let record = FaultRecord {
         fault: Fault::EncoderJumped,
         number: 1,

@@ -87,3 +87,33 @@ fn a_spot_that_moves_is_never_dark() {
         assert!(!budget.is_spent(&config, Some((at, PanTilt::new(0.0, 0.0)))), "{tick}");
     }
 }
+
+/// A controller that begins anew knows how long it was dark, and not where it was lit: it lets no more through than one that had gone on would.
+#[test]
+fn who_begins_anew_after_a_dark_time_lets_no_more_through() {
+    let config = config(500);
+    let (at, still) = (PanTilt::new(0.1, 0.2), PanTilt::new(0.0, 0.0));
+    for dark_ticks in (0..9000).step_by(250) {
+        let mut budget = LightBudget::new();
+        let (mut gate, mut held, mut most, mut again) = (false, 0.0_f64, 0.0_f64, 0);
+        let mut pass = |budget: &mut LightBudget, gate: &mut bool, wants: bool| {
+            budget.tick(&config, Some(at), *gate, None);
+            held = (held - 0.1).max(0.0) + f64::from(u8::from(*gate));
+            most = most.max(held);
+            *gate = wants && !budget.is_spent(&config, Some((at, still)));
+            u32::from(*gate)
+        };
+        (0..1000).for_each(|_| _ = pass(&mut budget, &mut gate, true));
+        (0..dark_ticks).for_each(|_| _ = pass(&mut budget, &mut gate, false));
+        let shut_ticks = budget.shut_ticks();
+        let mut anew = LightBudget::spent(&config, shut_ticks);
+        assert_eq!(anew.shut_ticks(), shut_ticks, "{dark_ticks}: also of the one after that");
+        let opens_in = anew.opens_in_ticks(&config);
+        (0..9000).for_each(|_| again += pass(&mut anew, &mut gate, true));
+        assert!(most <= 500.0, "{dark_ticks}: {most}");
+        // and it keeps nobody waiting for longer than it says, nor for ever
+        assert!(opens_in <= 2600 && again > 300, "{dark_ticks}: in {opens_in}, lit {again}");
+        assert!(dark_ticks < 2600 || opens_in == 0, "{dark_ticks}: in {opens_in}");
+    }
+    assert_eq!(LightBudget::spent(&config, u32::MAX).opens_in_ticks(&config), 0, "it was never lit");
+}
