@@ -4,11 +4,14 @@ use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
 use tracelight_eye::refused;
 use tracelight_rig::FaultRecord;
 use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
-use tracelight_sim::{AFTERMATH_TICKS, Simulated as _, SimulatedRig, Tick, tick};
+use tracelight_sim::{AFTERMATH_TICKS, Observed, Tick, observed_tick};
 use tracelight_task::{Failure, Task};
 
 use crate::hands::{Ask, Hands};
 use crate::keep::Keep;
+
+/// A rig that a session has in hand, whichever it is.
+pub(crate) type Wall<'a> = Session<&'a mut (dyn Observed + 'a)>;
 
 /// Ticks the head is watched after the user stopped it: longer than any relay of a rig file takes to open.
 const GOODBYE_TICKS: u32 = 80;
@@ -28,7 +31,7 @@ pub(crate) trait Course {
     fn ask(
         &mut self,
         ask: Ask,
-        wall: &mut Session<&mut SimulatedRig>,
+        wall: &mut Wall<'_>,
         hands: &mut dyn Hands,
         task: Task<'_>,
     ) -> Result<(), Refused>;
@@ -49,20 +52,22 @@ pub(crate) struct Ended {
     pub(crate) now: Snapshot,
 }
 
-/// Arms a rig for a job, as who calls for it has done both acts, and lets it run to its end, or to where nobody is there to go on with it. Whatever ends it darkens
-/// first.
+/// Lets a session with a rig run a job to its end, or to where nobody is there to go on with it. Who calls for it has done both acts of arming, unless whoever is at the
+/// wall does them. A head that rests elsewhere than where the job begins goes there first. Whatever ends it darkens first.
 pub(crate) fn drive(
-    rig: &mut SimulatedRig,
+    rig: &mut dyn Observed,
     job: Job,
     course: &mut dyn Course,
     (keep, hands): (&mut dyn Keep, &mut dyn Hands),
     task: Task<'_>,
 ) -> Result<Ended, Failure> {
     let wall = &mut Session::new(rig);
-    let first = tick(wall);
+    let Some(first) = observed_tick(wall) else { return Ok(Ended::gone(wall)) };
     check_homed(&first.telemetry)?;
     course.keep(keep, first, &wall.snapshot(), 0)?;
-    begin(wall, job).map_err(refused)?;
+    if job.dry || !hands.arms() {
+        begin(wall, job).map_err(refused)?;
+    }
     let mut power = PowerWatch::default();
     power.is_lost(&first.telemetry);
     let (mut goodbye, mut aftermath, mut on_ticks) = (GOODBYE_TICKS, AFTERMATH_TICKS, 0);
@@ -70,14 +75,14 @@ pub(crate) fn drive(
     while !course.is_over() && wall.state() != State::Done && goodbye > 0 && aftermath > 0 {
         // the tick in which a lap ends belongs to that one
         let laps = wall.snapshot().laps;
-        let last = tick(wall);
-        if power.is_lost(&last.telemetry) {
-            return Ok(Ended { failure: Some(lost_power()), fault: None, now: wall.snapshot() });
-        }
+        let Some(last) = observed_tick(wall) else { return Ok(Ended::gone(wall)) };
         let now = wall.snapshot();
+        if power.is_lost(&last.telemetry) {
+            return Ok(Ended { failure: Some(lost_power()), fault: None, now });
+        }
         if let Err(why) = course.keep(keep, last, &now, laps) {
             let _ = wall.request(Request::Stop);
-            tick(wall);
+            observed_tick(wall);
             return Err(why);
         }
         while let Some(event) = wall.event() {
@@ -108,11 +113,26 @@ pub(crate) fn drive(
     if now.state != State::Done {
         let _ = wall.request(Request::Stop);
     }
-    if now.gate {
-        let last = tick(wall);
+    if now.gate
+        && let Some(last) = observed_tick(wall)
+    {
         course.keep(keep, last, &wall.snapshot(), now.laps)?;
     }
     Ok(Ended { failure, fault: wall.told().latched, now })
+}
+
+impl Ended {
+    /// Of a rig that does not answer any more.
+    fn gone(wall: &Wall<'_>) -> Self {
+        Self { failure: Some(gone()), fault: None, now: wall.snapshot() }
+    }
+}
+
+/// A rig that does not answer any more.
+pub(crate) fn gone() -> Failure {
+    let message = "the rig does not answer any more; its board darkens by itself. What was drawn until then is told, and `tracelight resume` with the folder of this \
+                   run draws what is left";
+    Failure::failed("rig-gone", message)
 }
 
 /// A rig that does not go on, though nobody here stopped it.
@@ -122,9 +142,18 @@ fn disarmed() -> Failure {
     Failure::failed("disarmed", message)
 }
 
-fn begin(wall: &mut Session<&mut SimulatedRig>, job: Job) -> Result<(), Refused> {
+fn begin(wall: &mut Wall<'_>, job: Job) -> Result<(), Refused> {
     if !job.dry {
         wall.request(Request::Arm)?;
     }
-    wall.request(Request::Trace(job))
+    match wall.request(Request::Trace(job.clone())) {
+        // it goes to zero first, in the dark
+        Err(Refused::Elsewhere { .. } | Refused::Moving) => {
+            if job.dry {
+                wall.request(Request::Arm)?;
+            }
+            wall.request(Request::Next(job))
+        }
+        begun => begun,
+    }
 }

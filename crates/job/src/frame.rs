@@ -1,12 +1,12 @@
 //! The frame of a drawing, again and again until somebody asks for the drawing.
 
 use tracelight_pipeline::Driving;
-use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
-use tracelight_sim::{SimulatedRig, Tick};
+use tracelight_session::{Event, Job, Refused, Request, Snapshot, State};
+use tracelight_sim::{Observed, Tick};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Task};
 
-use crate::course::{Course, Ended, drive};
+use crate::course::{Course, Ended, Wall, drive};
 use crate::hands::{Ask, Hands, Step};
 use crate::keep::Keep;
 use crate::looped::{Item, Looped};
@@ -35,7 +35,7 @@ pub(crate) fn frame_of(
 
 /// Drives a course, after its frame where it has one.
 pub(crate) fn drive_framed(
-    rig: &mut SimulatedRig,
+    rig: &mut dyn Observed,
     (first, course): (Job, &mut dyn Course),
     frame: Option<&Looped>,
     (keep, hands): (&mut dyn Keep, &mut dyn Hands),
@@ -100,7 +100,7 @@ impl Course for Framed<'_> {
     fn ask(
         &mut self,
         ask: Ask,
-        wall: &mut Session<&mut SimulatedRig>,
+        wall: &mut Wall<'_>,
         hands: &mut dyn Hands,
         task: Task<'_>,
     ) -> Result<(), Refused> {

@@ -49,7 +49,8 @@ pub enum Step {
 }
 
 /// Nobody: the job runs by itself, as fast as its rig does.
-pub(crate) struct Nobody;
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Nobody;
 
 impl Hands for Nobody {
     fn tick(&mut self, _: &Snapshot) -> Option<Ask> {
@@ -87,6 +88,11 @@ pub trait Hands {
 
     /// Told how a camera looks into what is suddenly off, in the dark or by dots: meanwhile nothing but to stop can be asked.
     fn looks(&mut self, _look: Look) {}
+
+    /// Whether they arm before the first light; otherwise who starts the job has done that.
+    fn arms(&self) -> bool {
+        false
+    }
 
     /// Whether anything may still be asked; otherwise a lap that is stopped, or that a fault ended, is over.
     fn is_there(&self) -> bool;

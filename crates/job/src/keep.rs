@@ -1,5 +1,6 @@
 //! Who keeps what happens.
 
+use tracelight_session::State;
 use tracelight_sim::Tick;
 use tracelight_task::Failure;
 use tracelight_trajectory::Plan;
@@ -8,6 +9,32 @@ use crate::points::PointDone;
 
 /// Ticks at rest that are kept in memory; the log has all.
 pub(crate) const REST_TICKS: u32 = 500;
+
+/// Which ticks are kept in memory: of those before a job begins the last, none on the way to another stroke, and of each rest so many.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Memory {
+    /// It has begun.
+    begun: bool,
+    /// Ticks since it rests.
+    rests: u32,
+}
+
+impl Memory {
+    /// Keeps one more tick, of a session in that state, or does not.
+    pub(crate) fn keep(&mut self, ticks: &mut Vec<Tick>, tick: Tick, state: State) {
+        self.begun |= state.is_on();
+        if !self.begun {
+            ticks.clear();
+            ticks.push(tick);
+            return;
+        }
+        let rests = !state.is_on() && !tick.light;
+        self.rests = if rests { self.rests.saturating_add(1) } else { 0 };
+        if state != State::Parking && self.rests <= REST_TICKS {
+            ticks.push(tick);
+        }
+    }
+}
 
 /// Told of every tick of a run as it happens: a log, a page, an array.
 pub trait Keep {

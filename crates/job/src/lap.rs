@@ -1,15 +1,15 @@
 //! A lap that no camera follows. Somebody at the wall may pause, stop, hurry or slow it, and let it go on.
 
-use tracelight_session::{Event, Refused, Request, Session, Snapshot};
-use tracelight_sim::{Run, SimulatedRig, Tick, job_of};
+use tracelight_session::{Event, Refused, Request, Snapshot};
+use tracelight_sim::{Observed, Run, Tick, job_of};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
 
-use crate::course::Course;
+use crate::course::{Course, Wall};
 use crate::diary::Diary;
 use crate::frame::drive_framed;
 use crate::hands::{Ask, Hands};
-use crate::keep::{Keep, REST_TICKS};
+use crate::keep::{Keep, Memory};
 use crate::looped::Looped;
 
 /// A lap, and what became of it.
@@ -23,13 +23,14 @@ pub(crate) struct RanLap {
 
 /// One lap, after the frame where there is one, every tick kept as it happens. Whatever ends it darkens first.
 pub(crate) fn run_lap(
-    rig: &mut SimulatedRig,
+    rig: &mut dyn Observed,
     (plan, frame): (&Plan, Option<&Looped>),
     dry: bool,
     (keep, hands): (&mut dyn Keep, &mut dyn Hands),
     task: Task<'_>,
 ) -> Result<RanLap, Failure> {
-    let mut lap = Lap { plan, dry, task, run: Run::default(), rests: 0, diary: Diary::default() };
+    let mut lap =
+        Lap { plan, dry, task, run: Run::default(), memory: Memory::default(), diary: Diary::default() };
     let ended = drive_framed(rig, (job_of(plan, dry), &mut lap), frame, (keep, hands), task)?;
     lap.diary.end(&ended.now);
     Ok(RanLap {
@@ -44,19 +45,14 @@ struct Lap<'a> {
     dry: bool,
     task: Task<'a>,
     run: Run,
-    /// Ticks since it rests.
-    rests: u32,
+    memory: Memory,
     diary: Diary,
 }
 
 impl Course for Lap<'_> {
     fn keep(&mut self, keep: &mut dyn Keep, tick: Tick, now: &Snapshot, _: u32) -> Result<(), Failure> {
         keep.tick(self.plan, &tick)?;
-        let is_resting = !now.state.is_on() && !tick.light;
-        self.rests = if is_resting { self.rests.saturating_add(1) } else { 0 };
-        if self.rests <= REST_TICKS {
-            self.run.ticks.push(tick);
-        }
+        self.memory.keep(&mut self.run.ticks, tick, now.state);
         self.diary.watch(now);
         if tick.telemetry.tick.is_multiple_of(256) {
             self.task.at(u64::from(tick.telemetry.plan_tick));
@@ -69,13 +65,7 @@ impl Course for Lap<'_> {
         true
     }
 
-    fn ask(
-        &mut self,
-        ask: Ask,
-        wall: &mut Session<&mut SimulatedRig>,
-        _: &mut dyn Hands,
-        _: Task<'_>,
-    ) -> Result<(), Refused> {
+    fn ask(&mut self, ask: Ask, wall: &mut Wall<'_>, _: &mut dyn Hands, _: Task<'_>) -> Result<(), Refused> {
         match ask {
             Ask::Request(Request::Resume) if wall.awaits_job() => {
                 wall.request(Request::Next(job_of(self.plan, self.dry)))
@@ -93,7 +83,7 @@ mod tests {
     use crate::hands::Nobody;
     use tracelight_aim::HeadPose;
     use tracelight_rig::Joint;
-    use tracelight_sim::{RigConfig, Simulated, Tick, Trouble};
+    use tracelight_sim::{RigConfig, Simulated, SimulatedRig, Tick, Trouble};
 
     use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
     use tracelight_task::{NoProgress, Stop};

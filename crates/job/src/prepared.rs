@@ -8,15 +8,16 @@ use tracelight_pipeline::{
     Before, Check, Driving, Placed, Schedule, Sketch, place, preflight, schedule, schedule_rest, sketch,
 };
 use tracelight_rig::{Joint, PanTilt};
-use tracelight_sim::{RigConfig, Run, SimulatedRig};
+use tracelight_sim::{LightFrom, Observed as _, Origin, RigConfig, Run, SimulatedRig};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::Plan;
 
 use crate::frame::frame_of;
 use crate::hands::{Hands, Nobody};
+use crate::head::Head;
 use crate::keep::Keep;
-use crate::lap::run_lap;
+use crate::lap::{RanLap, run_lap};
 use crate::learned::{Learned, learn};
 use crate::looped::{Item, Looped};
 use crate::points::PointDone;
@@ -70,8 +71,8 @@ pub struct Ran {
     pub points: Vec<PointDone>,
     /// Whether it did all that it was to do.
     pub finished: bool,
-    /// Its rig was one of equations: nothing moved, no light fell. Whatever shows results says so.
-    pub simulated: bool,
+    /// Where what is told of it comes from: whatever shows results says so.
+    pub origin: Origin,
     /// How long all laps took to run, ms.
     pub run_ms: f64,
 }
@@ -203,26 +204,27 @@ impl Prepared {
     /// # Errors
     /// Where a tick cannot be kept, or the head was never homed. What ends a lap early is no error: see [`Ran::failure`].
     pub fn run(&self, keep: &mut dyn Keep, task: Task<'_>) -> Result<Ran, Failure> {
-        self.run_by_hand(keep, &mut Nobody, task)
+        self.run_by_hand(Head::Simulated, (keep, &mut Nobody), task)
     }
 
-    /// Runs the laps with somebody at the wall, who may pause and stop each of them, and let it go on.
+    /// Runs the laps, or the only one of a given head, with somebody at the wall, who may pause and stop each of them, and let it go on.
     ///
     /// # Errors
     /// As of [`run`](Self::run).
     pub fn run_by_hand(
         &self,
-        keep: &mut dyn Keep,
-        hands: &mut dyn Hands,
+        head: Head<'_>,
+        (keep, hands): (&mut dyn Keep, &mut dyn Hands),
         task: Task<'_>,
     ) -> Result<Ran, Failure> {
-        let (laps, run_ms) = task.timed(|| self.run_laps(keep, hands, task));
-        let Laps { earlier, last, learned, watched, failure, simulated } = laps?;
+        let (laps, run_ms) = task.timed(|| self.run_laps(head, (keep, hands), task));
+        let Laps { earlier, last, learned, watched, failure, origin } = laps?;
         learned.notes.iter().for_each(|note| task.say(&format!("note: {note}")));
         let follow = watched.as_ref().map(|watched| watched.figures.clone());
         let eye = self.seen.as_ref().map(|seen| seen.after(&last, follow));
         let words = eye.iter().flat_map(EyeFigures::words);
-        let notes = self.notes.iter().chain(&learned.notes).cloned().chain(words).collect();
+        let known = known_by(origin, &self.driving);
+        let notes = self.notes.iter().chain(&learned.notes).cloned().chain(words).chain(known).collect();
         let failure = failure.or_else(|| ending(&last, task.stop));
         let identified = learned.taken.then_some(learned.rig);
         let (plan, seen) = watched.map(|watched| (watched.plan, watched.seen)).unzip();
@@ -239,7 +241,7 @@ impl Prepared {
             failure,
             points,
             finished,
-            simulated,
+            origin,
             run_ms,
         })
     }
@@ -271,20 +273,21 @@ impl Prepared {
     /// As of [`run`](Self::run) and [`by_steps`](Self::by_steps).
     pub fn run_steps(
         mut self,
-        keep: &mut dyn Keep,
-        hands: &mut dyn Hands,
+        mut head: Head<'_>,
+        (keep, hands): (&mut dyn Keep, &mut dyn Hands),
         task: Task<'_>,
     ) -> Result<(Self, Ran), Failure> {
-        let RunRequest { seed, dry, powered_up, .. } = self.how;
+        let dry = self.how.dry;
+        let mut put_up = self.put_up(&self.driving.rig);
+        let rig = head.or(&mut put_up);
+        let origin = rig.origin();
         let Self { driving, schedule, placed, first, .. } = &mut self;
-        let put_up = if powered_up { left } else { SimulatedRig::new };
-        let mut rig = put_up(&driving.rig, driving.pose, seed);
         task.stage("run", 1);
         let items = Item::all(&schedule.ordered.drawing, &placed.points, *first);
         let frame = frame_of(placed.frame.as_ref(), driving, dry)?;
         let whole = (items.as_slice(), &*driving);
         let how = (frame.as_ref(), dry);
-        let (ran, run_ms) = task.timed(|| run_steps(&mut rig, whole, how, (keep, hands), task));
+        let (ran, run_ms) = task.timed(|| run_steps(rig, whole, how, (keep, hands), task));
         let StepRun { run, plan, drawing, failure, fault, finished, points, notes } = ran?;
         let fault = fault.map(Failure::fault);
         let unfinished = || {
@@ -295,7 +298,8 @@ impl Prepared {
             (!finished).then_some(why)
         };
         let failure = failure.or(fault).or_else(unfinished);
-        let notes: Vec<String> = self.notes.iter().cloned().chain(notes).collect();
+        let known = known_by(origin, &self.driving);
+        let notes: Vec<String> = self.notes.iter().cloned().chain(notes).chain(known).collect();
         (self.schedule.ordered.drawing, self.schedule.plan) = (drawing, plan);
         let ran = Ran {
             earlier: Vec::new(),
@@ -308,15 +312,27 @@ impl Prepared {
             failure,
             points,
             finished,
-            simulated: true,
+            origin,
             run_ms,
         };
         Ok((self, ran))
     }
 
-    fn run_laps(&self, keep: &mut dyn Keep, hands: &mut dyn Hands, task: Task<'_>) -> Result<Laps, Failure> {
-        let RunRequest { laps: wanted, seed, dry, powered_up } = self.how;
-        let plan = &self.schedule.plan;
+    /// A simulated head, as it is believed to be.
+    fn put_up(&self, believed: &RigConfig) -> SimulatedRig {
+        let RunRequest { seed, powered_up, .. } = self.how;
+        let put_up = if powered_up { left } else { SimulatedRig::new };
+        put_up(believed, self.driving.pose, seed)
+    }
+
+    fn run_laps(
+        &self,
+        mut head: Head<'_>,
+        (keep, hands): (&mut dyn Keep, &mut dyn Hands),
+        task: Task<'_>,
+    ) -> Result<Laps, Failure> {
+        // one that is given would have to be told what was identified
+        let wanted = if head.is_given() { 1 } else { self.how.laps };
         let mut laps: Vec<Run> = Vec::new();
         // what happened in them
         let mut told: Vec<String> = Vec::new();
@@ -326,25 +342,20 @@ impl Prepared {
                 "nothing is identified between laps: a head without encoders does not show what it does";
             learned.notes.push(note.to_owned());
         }
-        let (mut watched, mut failure) = (None, None);
+        let (mut watched, mut failure, mut origin) = (None, None, Origin::SIMULATION);
         while laps.len() < wanted as usize && !task.stop.is_wanted() && failure.is_none() {
             if !laps.is_empty() && !self.driving.rig.drive.kind.is_open_loop() {
                 task.stage("identify", 1);
                 learned = learn(&self.driving.rig, &laps);
             }
-            task.stage("run", plan.points.len() as u64);
+            task.stage("run", self.schedule.plan.points.len() as u64);
             let Some(looks) = self.watched() else {
-                let put_up = if powered_up { left } else { SimulatedRig::new };
-                let mut rig = put_up(&learned.rig, self.driving.pose, seed);
-                // of the first lap
-                let frame = self.placed.frame.as_ref().filter(|_| laps.is_empty());
-                let frame = frame_of(frame, &self.driving, dry)?;
-                let drawn = (plan, frame.as_ref());
-                let done = run_lap(&mut rig, drawn, dry, (keep, hands), task)?;
-                told.extend(done.notes);
-                told.extend(lost_note(&learned.rig, self.driving.pose.distance_m, rig.lost_steps()));
-                laps.push(done.run);
-                failure = done.failure;
+                // before the first one
+                let framed = laps.is_empty();
+                let done = self.unwatched_lap(&mut head, (&learned.rig, framed), (keep, hands), task)?;
+                told.extend(done.0.notes);
+                laps.push(done.0.run);
+                (failure, origin) = (done.0.failure, done.1);
                 continue;
             };
             let mut done = self.watched_lap(looks, &learned.rig, (keep, hands), task)?;
@@ -355,8 +366,29 @@ impl Prepared {
         }
         learned.notes.append(&mut told);
         let last = laps.pop().unwrap_or_default();
-        // both ways above put up a `SimulatedRig`
-        Ok(Laps { earlier: laps, last, learned, watched, failure, simulated: true })
+        Ok(Laps { earlier: laps, last, learned, watched, failure, origin })
+    }
+
+    /// One lap that no camera follows, after the frame if there is to be one, of a rig that is believed to be this; and where what is told of it comes from.
+    fn unwatched_lap(
+        &self,
+        head: &mut Head<'_>,
+        (believed, framed): (&RigConfig, bool),
+        (keep, hands): (&mut dyn Keep, &mut dyn Hands),
+        task: Task<'_>,
+    ) -> Result<(RanLap, Origin), Failure> {
+        let dry = self.how.dry;
+        let frame = self.placed.frame.as_ref().filter(|_| framed);
+        let frame = frame_of(frame, &self.driving, dry)?;
+        let drawn = (&self.schedule.plan, frame.as_ref());
+        if let Head::Given(rig) = head {
+            let done = run_lap(&mut **rig, drawn, dry, (keep, hands), task)?;
+            return Ok((done, rig.origin()));
+        }
+        let mut rig = self.put_up(believed);
+        let mut done = run_lap(&mut rig, drawn, dry, (keep, hands), task)?;
+        done.notes.extend(lost_note(believed, self.driving.pose.distance_m, rig.lost_steps()));
+        Ok((done, rig.origin()))
     }
 
     /// One lap that a camera follows, of a rig that is believed to be this.
@@ -378,6 +410,17 @@ impl Prepared {
         };
         run_watched(&job, room.watched(believed, driving.pose), (keep, hands), task)
     }
+}
+
+/// What to say of figures of a spot that nobody saw.
+fn known_by(origin: Origin, driving: &Driving) -> Option<String> {
+    (origin.light_from == LightFrom::Encoders).then(|| {
+        format!(
+            "where the spot was is what the encoders say, on a target {:.3} m from a head that is built as the rig {} is said to be: nobody saw the light, and what its \
+             beam, its bearings and its stand are off is in none of these figures",
+            driving.pose.distance_m, driving.rig.name
+        )
+    })
 }
 
 /// What to say of a lap after which stepper motors are behind their pulses.
@@ -412,8 +455,7 @@ struct Laps {
     watched: Option<WatchedRun>,
     /// Why the last one ended before its time, if the user did not end it.
     failure: Option<Failure>,
-    /// By equations of a head.
-    simulated: bool,
+    origin: Origin,
 }
 
 /// Whether the last lap ended as it should.

@@ -2,16 +2,16 @@
 
 use tracelight_pipeline::Driving;
 use tracelight_rig::FaultRecord;
-use tracelight_session::{Event, Refused, Request, Session, Snapshot, State, seconds};
-use tracelight_sim::{Run, SimulatedRig, Tick};
+use tracelight_session::{Event, Refused, Request, Snapshot, State, seconds};
+use tracelight_sim::{Observed, Run, Tick};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Task, counted};
 use tracelight_trajectory::Plan;
 
-use crate::course::Course;
+use crate::course::{Course, Wall};
 use crate::frame::drive_framed;
 use crate::hands::{Ask, Hands, Step};
-use crate::keep::{Keep, REST_TICKS};
+use crate::keep::{Keep, Memory};
 use crate::looped::{Item, Looped};
 use crate::points::PointDone;
 use crate::remainder::join;
@@ -50,13 +50,12 @@ struct Walk<'a> {
     /// One was ticked off that is not kept yet.
     is_new: bool,
     seen: StepRun,
-    /// Ticks since it rests.
-    rests: u32,
+    memory: Memory,
 }
 
 /// Goes through items, each drawn again and again until somebody asks for another one.
 pub(crate) fn run_steps(
-    rig: &mut SimulatedRig,
+    rig: &mut dyn Observed,
     (items, driving): (&[Item], &Driving),
     (frame, dry): (Option<&Looped>, bool),
     (keep, hands): (&mut dyn Keep, &mut dyn Hands),
@@ -103,13 +102,13 @@ impl<'a> Walk<'a> {
             done_s: vec![None; items.len()],
             is_new: false,
             seen,
-            rests: 0,
+            memory: Memory::default(),
         })
     }
 
     /// The item that was to be drawn when it was stopped on the way there, or by a fault: it is begun again, from
     /// wherever that left the head.
-    fn begin_here(&self, ask: Ask, wall: &mut Session<&mut SimulatedRig>) -> Result<(), Refused> {
+    fn begin_here(&self, ask: Ask, wall: &mut Wall<'_>) -> Result<(), Refused> {
         wall.request(match ask {
             Ask::Step(_) | Ask::Request(Request::Resume) => Request::Next(self.looped.job.clone()),
             Ask::Request(request) => request,
@@ -125,7 +124,7 @@ impl<'a> Walk<'a> {
     fn step(
         &mut self,
         step: Step,
-        wall: &mut Session<&mut SimulatedRig>,
+        wall: &mut Wall<'_>,
         hands: &mut dyn Hands,
         task: Task<'_>,
     ) -> Result<(), Refused> {
@@ -170,13 +169,13 @@ impl<'a> Walk<'a> {
     }
 
     /// Whether the present item was drawn, or a part of it.
-    fn was_lit(&self, wall: &Session<&mut SimulatedRig>) -> bool {
+    fn was_lit(&self, wall: &Wall<'_>) -> bool {
         let now = wall.snapshot();
         let begins = self.looped.job.strokes.first().map_or(0, |stroke| stroke.start);
         now.laps > 0 || now.plan_tick > begins
     }
 
-    fn tick_off(&mut self, step: Step, lit: bool, wall: &Session<&mut SimulatedRig>, hands: &mut dyn Hands) {
+    fn tick_off(&mut self, step: Step, lit: bool, wall: &Wall<'_>, hands: &mut dyn Hands) {
         let done_s = &mut self.done_s[self.at];
         if step == Step::Next && (lit || self.dry) {
             self.is_new |= done_s.is_none();
@@ -237,11 +236,7 @@ impl Course for Walk<'_> {
         let plan_tick = if state == State::Parking { 0 } else { tick.telemetry.plan_tick };
         tick.telemetry.plan_tick = self.base + plan_tick;
         keep.tick(&self.seen.plan, &tick)?;
-        let is_on = state.is_on();
-        self.rests = if is_on { 0 } else { self.rests.saturating_add(1) };
-        if state != State::Parking && self.rests <= REST_TICKS {
-            self.seen.run.ticks.push(tick);
-        }
+        self.memory.keep(&mut self.seen.run.ticks, tick, state);
         Ok(())
     }
 
@@ -253,7 +248,7 @@ impl Course for Walk<'_> {
     fn ask(
         &mut self,
         ask: Ask,
-        wall: &mut Session<&mut SimulatedRig>,
+        wall: &mut Wall<'_>,
         hands: &mut dyn Hands,
         task: Task<'_>,
     ) -> Result<(), Refused> {

@@ -11,7 +11,8 @@ mod ink;
 use tracelight_aim::HeadPose;
 use tracelight_eye::room::SimulatedEye;
 use tracelight_job::{
-    Ask, Hands, Keep, Look, Prepared, Ran, Request as Asks, RunRequest, Scene, Wall, prepare, prepare_wall,
+    Ask, Hands, Head, Keep, Look, Prepared, Ran, Request as Asks, RunRequest, Scene, Wall, prepare,
+    prepare_wall,
 };
 use tracelight_picture::{Source, decode};
 use tracelight_pipeline::{Asked, Driving, Placing, Tracing, request_of};
@@ -180,7 +181,7 @@ fn held(job: &Prepared, somebody: Option<Somebody>, task: Task<'_>) -> (Ran, Lig
     let at = somebody.as_ref().map_or(u32::MAX, |somebody| somebody.at);
     let mut keep = Light { held: at, ..Light::default() };
     let mut somebody = somebody.unwrap_or(Somebody::who(How::Slow, u32::MAX));
-    let ran = job.run_by_hand(&mut keep, &mut somebody, task).unwrap();
+    let ran = job.run_by_hand(Head::Simulated, (&mut keep, &mut somebody), task).unwrap();
     assert!(ran.failure.is_none() && ran.finished, "{at}: {:?}", ran.failure);
     assert_eq!(somebody.refused, Vec::<String>::new(), "{at}");
     if let Some(follow) = ran.eye.as_ref().and_then(|eye| eye.follow.as_ref()) {
@@ -272,7 +273,7 @@ fn so_is_what_nobody_follows() {
 
 /// A run of a job with which something goes wrong on its way, to its end.
 fn run_by(job: &Prepared, mut keep: Light, hands: &mut dyn Hands, task: Task<'_>) -> Light {
-    let ran = job.run_by_hand(&mut keep, hands, task).unwrap();
+    let ran = job.run_by_hand(Head::Simulated, (&mut keep, hands), task).unwrap();
     assert!(ran.failure.is_none() && ran.finished, "{:?} {:?}", ran.failure, ran.notes);
     let follow = ran.eye.as_ref().unwrap().follow.as_ref().unwrap();
     assert!(!follow.recoveries.is_empty(), "{:?}", follow.remarks);
@@ -321,12 +322,14 @@ fn a_job_that_was_stopped_lets_out_no_dots_before_somebody_arms() {
     let task = Task { progress: &NoProgress, stop: &stop };
     let job = prepared(PICTURES[1], true, (5, &["head-bump=0.2@2"]), task);
     let (mut looked, mut light) = (0, Light { held: u32::MAX, ..Light::default() });
-    let _ = job.run_by_hand(&mut light, &mut Quick { at: u32::MAX, ..Quick::default() }, task).unwrap();
+    let _ = job
+        .run_by_hand(Head::Simulated, (&mut light, &mut Quick { at: u32::MAX, ..Quick::default() }), task)
+        .unwrap();
     let struck = light.ticks.iter().position(|(plan_tick, gate)| *plan_tick >= 2000 && *gate).unwrap();
     for later in (10..250).step_by(16) {
         let mut hands = Quick { at: struck as u32 + later, ..Quick::default() };
         let mut keep = Light { held: u32::MAX, ..Light::default() };
-        let ran = job.run_by_hand(&mut keep, &mut hands, task).unwrap();
+        let ran = job.run_by_hand(Head::Simulated, (&mut keep, &mut hands), task).unwrap();
         assert!(ran.failure.is_none() && ran.finished, "{later}: {:?} {:?}", ran.failure, ran.notes);
         assert_eq!(hands.lit, 0, "{later}: light while it was stopped");
         let follow = ran.eye.as_ref().unwrap().follow.as_ref().unwrap();

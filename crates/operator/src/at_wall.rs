@@ -12,7 +12,6 @@ use tracelight_session::{
 use tracelight_stroke::Place;
 use tracelight_task::{Pace, Stop, Task};
 
-use crate::cli::by_hand::ByHandArgs;
 use crate::keys::{Key, Keys};
 
 /// What the keys do.
@@ -27,23 +26,40 @@ const FRAME_HELP: &str = "keys: the frame is drawn until Space, Enter or → beg
 /// How often progress is told, ticks of the rig.
 const PROGRESS_TICKS: u32 = 250;
 
+/// How somebody at the wall attends a job.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Attending {
+    /// How many times as fast as real time a simulated rig runs; as fast as it can where there is none.
+    pub real_time: Option<f64>,
+    /// The rig keeps time by itself, as one behind a port does.
+    pub keeps_time: bool,
+    /// They arm before the first light; otherwise who starts the program has done that.
+    pub arms: bool,
+    /// How long to stay on one stroke or point before the next, s; until a key is pressed where there is none.
+    pub each_s: Option<f64>,
+    /// The frame of the drawing comes first.
+    pub framing: bool,
+    /// Strokes or points are drawn one at a time.
+    pub steps: bool,
+    /// Events are printed as JSON lines.
+    pub events: bool,
+}
+
 /// Keys, clock and events of one job.
-pub(crate) struct AtWall<'a> {
+pub struct AtWall<'a> {
+    how: Attending,
     task: Task<'a>,
     stop: &'a Stop,
     clock: Option<Pace>,
     keys: Option<Keys>,
-    events: bool,
-    /// Strokes are drawn one at a time.
-    steps: bool,
-    /// They mark points.
+    /// Strokes mark points.
     points: bool,
     /// The frame is drawn.
     framing: bool,
     /// How a camera looks into what is off, if it does.
     look: Option<Look>,
     /// A key has armed it once: before, the program arms for whoever started it.
-    arms: bool,
+    armed: bool,
     /// The last key paused it at once.
     at_once: bool,
     /// After so many ticks on one stroke or point the next one follows.
@@ -54,37 +70,31 @@ pub(crate) struct AtWall<'a> {
 
 impl<'a> AtWall<'a> {
     /// Whoever stands there, if the job runs by hand at all.
-    pub(crate) fn of(args: &ByHandArgs, steps: bool, task: Task<'a>, stop: &'a Stop) -> Option<Self> {
-        let waits = steps && args.each.is_none() || args.frame.is_some();
-        let real_time = args.real_time.or(waits.then_some(1.0));
-        if real_time.is_none() && !args.events && !steps {
+    #[must_use]
+    pub fn of(how: Attending, task: Task<'a>, stop: &'a Stop) -> Option<Self> {
+        let Attending { real_time, keeps_time, each_s, framing, steps, events, .. } = how;
+        let by_the_clock = real_time.is_some() || keeps_time;
+        if !by_the_clock && !events && !steps {
             return None;
         }
-        let keys = real_time.and_then(|_| Keys::listen());
-        let clock = real_time.map(|factor| Pace::new(TICK_F64_S / factor));
-        let framing = args.frame.is_some();
-        let each_ticks = args.each.map(|time_s| (time_s / TICK_F64_S) as u32);
-        let (events, on_it_since) = (args.events, None);
-        let (points, look, arms, at_once) = (false, None, false, false);
         Some(Self {
+            how,
             task,
             stop,
-            clock,
-            keys,
-            events,
-            steps,
-            points,
+            clock: real_time.filter(|_| !keeps_time).map(|factor| Pace::new(TICK_F64_S / factor)),
+            keys: by_the_clock.then(Keys::listen).flatten(),
+            points: false,
             framing,
-            look,
-            arms,
-            at_once,
-            each_ticks,
-            on_it_since,
+            look: None,
+            armed: false,
+            at_once: false,
+            each_ticks: each_s.map(|time_s| (time_s / TICK_F64_S) as u32),
+            on_it_since: None,
         })
     }
 
     fn help(&self) {
-        self.task.say(match (self.framing, self.steps) {
+        self.task.say(match (self.framing, self.how.steps) {
             (true, _) => FRAME_HELP,
             (false, true) => STEP_HELP,
             (false, false) => HELP,
@@ -92,11 +102,14 @@ impl<'a> AtWall<'a> {
     }
 
     /// Tells what was looked at before any light.
-    pub(crate) fn preflight(&self, checks: &[Check]) {
+    pub fn preflight(&self, checks: &[Check]) {
         self.print(&json!({"event": "preflight", "checks": checks}));
         if self.keys.is_some() {
             checks.iter().for_each(|check| self.task.say(&check.line()));
             self.help();
+            if self.how.arms {
+                self.task.say("dark until somebody arms it: A arms, then Enter begins within 10 s");
+            }
         }
     }
 
@@ -132,7 +145,7 @@ impl<'a> AtWall<'a> {
     fn step(&self, key: Key, now: &Snapshot) -> Option<Step> {
         let is_on = now.state.is_on() || now.state == State::Parking;
         match key {
-            _ if !self.steps && !self.framing => None,
+            _ if !self.how.steps && !self.framing => None,
             Key::Backwards | Key::Char('s') if self.framing => None,
             Key::Space | Key::Enter if is_on => Some(Step::Next),
             Key::Forwards => Some(Step::Next),
@@ -156,7 +169,7 @@ impl<'a> AtWall<'a> {
 
     /// Prints an event. Where nobody reads them any more the job ends, and its results are kept.
     fn print(&self, event: &Value) {
-        if self.events && writeln!(std::io::stdout(), "{event}").is_err() {
+        if self.how.events && writeln!(std::io::stdout(), "{event}").is_err() {
             self.stop.want();
         }
     }
@@ -175,7 +188,7 @@ impl Hands for AtWall<'_> {
             return Some(Ask::Step(step));
         }
         let request = self.meaning(key, now)?;
-        self.arms |= request == Request::Arm;
+        self.armed |= request == Request::Arm;
         self.at_once = request == Request::Pause(When::AtOnce);
         if let Request::Speed(speed) = request {
             self.task.say(&format!("speed {:.0} %", 100.0 * speed));
@@ -222,16 +235,16 @@ impl Hands for AtWall<'_> {
             Event::State { tick: 0, .. } => None,
             // what the camera has the head do is nobody's to go on with, and who ends it knows
             Event::State { .. } | Event::Fault(_) if self.look.is_some() || self.stop.is_wanted() => None,
-            Event::State { to: State::Armed, .. } if !self.arms => None,
+            Event::State { to: State::Armed, .. } if !self.armed => None,
             Event::State { to: State::Pausing, .. } if self.at_once => None,
             Event::State { to, .. } => words(to).map(str::to_owned),
             Event::Stroke { stroke, of, .. } => {
-                (self.steps && !self.points).then(|| format!("stroke {} of {of}", stroke + 1))
+                (self.how.steps && !self.points).then(|| format!("stroke {} of {of}", stroke + 1))
             }
             Event::NotBegun { why, .. } => Some(why.to_string()),
             Event::Fault(record) => Some(format!("fault {record} (C clears it)")),
         };
-        self.arms &= !matches!(event, Event::State { to: State::Armed, .. });
+        self.armed &= !matches!(event, Event::State { to: State::Armed, .. });
         self.print(&event_json(event));
         if let Some(words) = words.filter(|_| self.keys.is_some()) {
             self.task.say(&words);
@@ -243,6 +256,10 @@ impl Hands for AtWall<'_> {
         if self.keys.is_some() {
             self.task.say(&why.to_string());
         }
+    }
+
+    fn arms(&self) -> bool {
+        self.how.arms
     }
 
     fn is_there(&self) -> bool {
@@ -257,7 +274,7 @@ const fn words(state: State) -> Option<&'static str> {
         State::Paused => Some("paused, dark: Space goes on"),
         State::Stopped => Some("stopped, dark: A arms, then Enter goes on; Q ends"),
         State::Returning => Some("dark, on its way back to the stroke"),
-        State::Armed => Some("armed for 10 s: Enter goes on"),
+        State::Armed => Some("armed for 10 s: Enter begins, or goes on"),
         State::Unhomed => Some("dark: the head does not know any more where it points; Q ends"),
         _ => None,
     }

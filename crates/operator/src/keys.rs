@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, channel};
 
 /// A key that means something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Key {
+pub enum Key {
     /// Space.
     Space,
     /// Enter.
@@ -23,14 +23,16 @@ pub(crate) enum Key {
 }
 
 /// Keys from standard input, for as long as this lives; then the terminal is as it was.
-pub(crate) struct Keys {
+#[derive(Debug)]
+pub struct Keys {
     pressed: Receiver<Key>,
     _raw: Raw,
 }
 
 impl Keys {
     /// Listens, if standard input is a terminal that can tell single keys.
-    pub(crate) fn listen() -> Option<Self> {
+    #[must_use]
+    pub fn listen() -> Option<Self> {
         if !std::io::stdin().is_terminal() {
             return None;
         }
@@ -50,7 +52,8 @@ impl Keys {
     }
 
     /// The next key that was pressed, if any was.
-    pub(crate) fn next(&self) -> Option<Key> {
+    #[must_use]
+    pub fn next(&self) -> Option<Key> {
         self.pressed.try_recv().ok()
     }
 }
@@ -98,19 +101,20 @@ fn escaped(rest: &[u8]) -> (Option<Key>, usize) {
 }
 
 /// A terminal that hands over single keys, does not show them, and leaves Ctrl-C to the program.
+#[derive(Debug)]
 struct Raw {
     #[cfg(unix)]
-    before: nix::sys::termios::Termios,
+    before: rustix::termios::Termios,
 }
 
 #[cfg(unix)]
 impl Raw {
     fn enter() -> Option<Self> {
-        use nix::sys::termios::{LocalFlags, SetArg, tcgetattr, tcsetattr};
+        use rustix::termios::{LocalModes, OptionalActions, tcgetattr, tcsetattr};
         let before = tcgetattr(std::io::stdin()).ok()?;
         let mut raw = before.clone();
-        raw.local_flags &= !(LocalFlags::ICANON | LocalFlags::ECHO | LocalFlags::ISIG);
-        tcsetattr(std::io::stdin(), SetArg::TCSANOW, &raw).ok()?;
+        raw.local_modes.remove(LocalModes::ICANON | LocalModes::ECHO | LocalModes::ISIG);
+        tcsetattr(std::io::stdin(), OptionalActions::Now, &raw).ok()?;
         Some(Self { before })
     }
 }
@@ -118,8 +122,8 @@ impl Raw {
 #[cfg(unix)]
 impl Drop for Raw {
     fn drop(&mut self) {
-        use nix::sys::termios::{SetArg, tcsetattr};
-        tcsetattr(std::io::stdin(), SetArg::TCSANOW, &self.before).ok();
+        use rustix::termios::{OptionalActions, tcsetattr};
+        tcsetattr(std::io::stdin(), OptionalActions::Now, &self.before).ok();
     }
 }
 

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use tracelight_device::{Host, Stage};
-use tracelight_rig::{Command, Rig, Telemetry};
+use tracelight_rig::wire::Greeting;
+use tracelight_rig::{Command, Rig, TICK_F64_S, Telemetry};
 use tracelight_sim::RigConfig;
-use tracelight_task::{Failure, Stop};
+use tracelight_task::{Failure, Stop, Task};
 
 use crate::port::Port;
 use crate::session::{micros, new_session};
@@ -27,25 +28,61 @@ pub struct Device {
     began: Instant,
     /// When the line broke.
     broke: Option<Instant>,
+    /// Whoever waits for a cable need not.
+    stop: Stop,
 }
 
 impl Device {
-    /// Greets the board at a port and configures it; its first tick is the next that is told. It is disarmed, and its motors hold it where it is.
+    /// Greets the board at a port and, if that is one to be driven, configures it; its first tick is the next that is told. It is disarmed, and its motors hold it
+    /// where it is.
     ///
     /// # Errors
-    /// `port`: it cannot be opened. `board`: what is wrong with the board, or its line. `interrupted`.
-    pub fn connect(path: &Path, config: &RigConfig, stop: &Stop) -> Result<Self, Failure> {
+    /// `port`: it cannot be opened. `board`: what is wrong with the board, or its line. `interrupted`. Why it is not one to be driven.
+    pub fn connect(
+        path: &Path,
+        config: &RigConfig,
+        mut meet: impl FnMut(&Greeting) -> Result<(), Failure>,
+        stop: &Stop,
+    ) -> Result<Self, Failure> {
         let port = Some(Port::open(path)?);
         let host = Host::new(config.control_config(), new_session());
-        let mut device = Self { host, port, path: path.to_owned(), began: Instant::now(), broke: None };
+        let (began, stop) = (Instant::now(), stop.clone());
+        let mut device = Self { host, port, path: path.to_owned(), began, broke: None, stop };
         while device.host.stage() != Stage::Running {
-            stop.check()?;
+            device.stop.check()?;
             device.pump();
+            device.host.board().map_or(Ok(()), &mut meet)?;
             if let Some(failure) = device.failure() {
                 return Err(failure);
             }
         }
         Ok(device)
+    }
+
+    /// Waits, dark, until light may be let out: whoever drove the head before may have had it anywhere. A head that has been dark for some seconds is not waited for.
+    ///
+    /// # Errors
+    /// As of [`connect`](Self::connect), or the head is gone.
+    pub fn wait_for_light(&mut self, task: Task<'_>) -> Result<(), Failure> {
+        let mut is_told = false;
+        // the first tick shows how it stands
+        while self.next().is_some() {
+            task.check()?;
+            let left_s = f64::from(self.host.opens_in_ticks()) * TICK_F64_S;
+            if left_s <= 0.0 {
+                return Ok(());
+            }
+            if !std::mem::replace(&mut is_told, true) {
+                task.say(&format!("note: the head was lit a moment ago, and nobody knows where: it stays dark for {left_s:.1} s more"));
+            }
+        }
+        Err(self.failure().unwrap_or_else(Failure::interrupted))
+    }
+
+    /// Whether a person must arm it.
+    #[must_use]
+    pub fn wants_a_person(&self) -> bool {
+        self.host.board().is_none_or(Greeting::wants_a_person)
     }
 
     /// What is known of the board.
@@ -103,7 +140,7 @@ impl Rig for Device {
             if let Some(told) = self.host.telemetry() {
                 return Some(told);
             }
-            if self.failure().is_some() {
+            if self.failure().is_some() || self.port.is_none() && self.stop.is_wanted() {
                 return None;
             }
             self.pump();

@@ -18,7 +18,7 @@ pub struct Examined {
 }
 
 /// Kinds of boards, by their numbers.
-const KINDS: [(u16, &str); 2] = [(0, "emulated board"), (1, "Pico 2")];
+const KINDS: [(u16, &str); 2] = [(Greeting::EMULATED, "emulated board"), (Greeting::PICO_2, "Pico 2")];
 
 fn kind(board: u16) -> String {
     let known = KINDS.into_iter().find(|(number, _)| *number == board);

@@ -1,14 +1,18 @@
 //! Boards on a line of this computer.
 //!
-//! A [`Port`] is a serial port or a pseudo-terminal that is held by one program at a time. [`examine`] greets the board at one and says what it is.
-//! [`Device`] is the head behind it, as a rig that a session drives.
+//! A [`Port`] is a serial port or a pseudo-terminal that is held by one program at a time. [`found()`] lists them, [`examine`] greets the board at one and says what it is.
+//! [`Device`] is the head behind it, as a rig that a session drives; [`head()`] as one that a job is run by.
 //! [`serve`] emulates a board with its head at a pseudo-terminal, by the clock, for whatever program speaks the wire's language.
 
 #[cfg(unix)]
 mod device;
 #[cfg(unix)]
 mod examine;
+#[cfg(unix)]
+mod found;
 mod greeting;
+#[cfg(unix)]
+mod head;
 #[cfg(unix)]
 mod port;
 #[cfg(unix)]
@@ -22,7 +26,11 @@ mod terminal;
 pub use device::Device;
 #[cfg(unix)]
 pub use examine::examine;
+#[cfg(unix)]
+pub use found::{Found, found};
 pub use greeting::{Examined, examined_json, examined_text};
+#[cfg(unix)]
+pub use head::{At, head};
 #[cfg(unix)]
 pub use port::Port;
 #[cfg(unix)]

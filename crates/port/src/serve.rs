@@ -4,9 +4,8 @@ use std::io::{Read as _, Write as _};
 use std::path::Path;
 
 use serde_json::{Value, json};
-use tracelight_aim::HeadPose;
 use tracelight_rig::TICK_F64_S;
-use tracelight_sim::{RigConfig, SimulatedRig};
+use tracelight_sim::ServedRig;
 use tracelight_task::{Failure, Pace, Task};
 
 use crate::terminal::Terminal;
@@ -15,14 +14,12 @@ use crate::terminal::Terminal;
 const MOST_WAITING: usize = 1 << 16;
 
 /// What is to be served.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Serving<'a> {
-    /// The head.
-    pub config: &'a RigConfig,
-    /// Where it stands.
-    pub pose: HeadPose,
-    /// Draws what differs from head to head.
-    pub seed: u64,
+    /// The board with its head.
+    pub rig: ServedRig,
+    /// What people call it.
+    pub name: &'a str,
     /// Name of the pseudo-terminal.
     pub at: &'a Path,
     /// For how long, s; until it is stopped where there is none.
@@ -57,12 +54,12 @@ impl Served {
     }
 }
 
-/// Emulates a board and its head at a pseudo-terminal. The head rests straight ahead, homed if its encoders know that.
+/// Emulates a board and its head at a pseudo-terminal. Whether the head knows where it points is as it is given.
 ///
 /// # Errors
 /// `port`: the pseudo-terminal cannot be made, or there is something else of that name.
-pub fn serve(serving: &Serving<'_>, task: Task<'_>) -> Result<Served, Failure> {
-    let Serving { config, pose, seed, at, lasts_s } = *serving;
+pub fn serve(serving: Serving<'_>, task: Task<'_>) -> Result<Served, Failure> {
+    let Serving { mut rig, name, at, lasts_s } = serving;
     let wrong = |e: std::io::Error| {
         let why = match e.kind() {
             std::io::ErrorKind::AlreadyExists => {
@@ -73,8 +70,7 @@ pub fn serve(serving: &Serving<'_>, task: Task<'_>) -> Result<Served, Failure> {
         Failure::failed("port", format!("{}: no pseudo-terminal can be made there: {why}", at.display()))
     };
     let mut terminal = Terminal::new(at).map_err(wrong)?;
-    let mut rig = SimulatedRig::new(config, pose, seed).served();
-    task.say(&format!("a board with the head of {} is at {}: Ctrl-C ends it", config.name, at.display()));
+    task.say(&format!("a board with the head of {name} is at {}: Ctrl-C ends it", at.display()));
     let (mut served, mut waiting, mut pace) = (Served::default(), Vec::new(), Pace::new(TICK_F64_S));
     while !task.stop.is_wanted() && lasts_s.is_none_or(|lasts_s| served.lasted_s < lasts_s) {
         pace.wait();

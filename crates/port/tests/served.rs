@@ -12,13 +12,18 @@ use tracelight_pipeline::request_of;
 use tracelight_port::{Device, Port, Served, Serving, examine, examined_json, examined_text, serve};
 use tracelight_rig::{Command, PanTilt, Phase, RateLimit, Segment};
 use tracelight_session::{Request, Session, State};
-use tracelight_sim::{RigConfig, job_of};
+use tracelight_sim::{RigConfig, SimulatedRig, job_of};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
 use tracelight_task::{Failure, NoProgress, Stop, Task};
 use tracelight_trajectory::plan;
 
 fn serving<'a>(config: &'a RigConfig, at: &'a std::path::Path) -> Serving<'a> {
-    Serving { config, pose: HeadPose::square_on(0.9144), seed: 1, at, lasts_s: None }
+    Serving {
+        rig: SimulatedRig::new(config, HeadPose::square_on(0.9144), 1).served(),
+        name: &config.name,
+        at,
+        lasts_s: None,
+    }
 }
 
 /// Serves a rig for as long as something is done with it.
@@ -30,7 +35,7 @@ fn served(rig: &str, name: &str, with: impl FnOnce(&std::path::Path)) -> Result<
         let (stop_it, at) = (&stop, path.clone());
         let board = threads.spawn(move || {
             let task = Task { progress: &NoProgress, stop: stop_it };
-            serve(&serving(&config, &at), task)
+            serve(serving(&config, &at), task)
         });
         let until = Instant::now() + Duration::from_secs(5);
         while !path.exists() && Instant::now() < until && !board.is_finished() {
@@ -84,7 +89,7 @@ fn one_program_at_a_time_has_a_port() {
         // nor is a second board put in the place of the first
         let stop = Stop::default();
         let task = Task { progress: &NoProgress, stop: &stop };
-        let twice = serve(&serving(&RigConfig::report(), path), task).unwrap_err();
+        let twice = serve(serving(&RigConfig::report(), path), task).unwrap_err();
         assert!(twice.message.contains("a board perhaps"), "{}", twice.message);
         assert!(examine(path, &stop).is_ok(), "the first is still there");
     })
@@ -103,14 +108,14 @@ fn what_is_no_port_is_told() {
     let stop = Stop::default();
     stop.want();
     let task = Task { progress: &NoProgress, stop: &stop };
-    let refused = serve(&serving(&RigConfig::report(), &file), task).unwrap_err();
+    let refused = serve(serving(&RigConfig::report(), &file), task).unwrap_err();
     assert!(refused.message.contains("no pseudo-terminal"), "{}", refused.message);
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "text");
     std::fs::remove_file(&file).unwrap();
     // what a killed board has left behind is in nobody's way
     std::os::unix::fs::symlink("/dev/pts/999999", &file).unwrap();
     let task = Task { progress: &NoProgress, stop: &stop };
-    serve(&serving(&RigConfig::report(), &file), task).unwrap();
+    serve(serving(&RigConfig::report(), &file), task).unwrap();
     assert!(std::fs::symlink_metadata(&file).is_err());
 }
 
@@ -184,7 +189,7 @@ fn a_session_parks_arms_and_traces_a_drawing_through_a_port() {
     let planned_lit_s =
         plan.lit_ticks().iter().flatten().map(|[from, to]| f64::from(to - from) * 1e-3).sum::<f64>();
     let ran = served("report", "traced", |at| {
-        let device = Device::connect(at, &config, &Stop::default()).unwrap();
+        let device = Device::connect(at, &config, |_| Ok(()), &Stop::default()).unwrap();
         let mut wall = Session::new(device);
         let until = Instant::now() + Duration::from_secs(40);
         let (mut reached, mut parked) = (Vec::new(), false);

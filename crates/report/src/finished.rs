@@ -8,7 +8,7 @@ use tracelight_eye::seen::SeenLight;
 use tracelight_picture::Raster;
 use tracelight_pipeline::{AlignFigures, LeftOut, Standing};
 use tracelight_rig::PanTilt;
-use tracelight_sim::{Run, Tracking};
+use tracelight_sim::{Origin, Run, Tracking};
 use tracelight_stroke::{Affine, Drawing, Point};
 use tracelight_trajectory::Plan;
 use tracelight_vision::Quality;
@@ -74,8 +74,8 @@ pub struct Finished<'a> {
     pub seed: u64,
     /// The gate was held dark on purpose.
     pub dry_run: bool,
-    /// The rig was one of equations; every result says so.
-    pub simulated: bool,
+    /// Where what is told of the run comes from; every result says so.
+    pub origin: Origin,
 }
 
 /// A decoded picture and where it lies.

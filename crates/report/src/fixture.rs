@@ -7,7 +7,7 @@ use tracelight_rig::{
     Actuation, Darkness, DarknessSet, Fault, FaultRecord, Inputs, Measurement, PanTilt, Phase, Setpoint,
     TICK_F64_S, Telemetry,
 };
-use tracelight_sim::{Run, Tick, Tracking};
+use tracelight_sim::{Origin, Run, Tick, Tracking};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_trajectory::{JointMotion, Plan, PlanPoint};
 use tracelight_vision::Quality;
@@ -70,7 +70,7 @@ impl Fixture {
             timing: Timing { vision_ms: 31.4, plan_ms: 120.2, run_ms: 88.8, report_ms: 0.0 },
             seed: 0,
             dry_run: false,
-            simulated: true,
+            origin: Origin::SIMULATION,
         }
     }
 }

@@ -28,6 +28,7 @@ mod fixture;
 mod head_gcode;
 mod limit;
 mod log;
+mod origin;
 mod page;
 mod painting;
 mod plan;

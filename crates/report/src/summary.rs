@@ -52,6 +52,8 @@ pub struct Summary {
     pub notes: Vec<String>,
     /// Nothing of this was measured on a head: the rig was one of equations.
     pub simulated: bool,
+    /// Who tells where the spot was, and so what the errors are of: `simulation`, or `encoders` where nobody saw the light.
+    pub light_from: &'static str,
     /// Wall-clock time of the stages, ms.
     pub timing_ms: TimingFigures,
     /// Seed of the run.
@@ -207,7 +209,8 @@ impl Summary {
             camera: job.eye.clone(),
             log: None,
             notes: job.notes.to_vec(),
-            simulated: job.simulated,
+            simulated: job.origin.simulated,
+            light_from: job.origin.light_from.name(),
             timing_ms: TimingFigures {
                 vision: job.timing.vision_ms,
                 plan: job.timing.plan_ms,
@@ -343,7 +346,7 @@ mod tests {
         check("tracking", &["off_stroke_rms_mm", "off_stroke_max_mm", "lit_speed_m_s", "at_speed_share"]);
         check("laser", &["lit_s", "faults"]);
         check("timing_ms", &["vision", "plan", "run", "report"]);
-        assert!(value["simulated"] == true);
+        assert!(value["simulated"] == true && value["light_from"] == "simulation");
         assert!(value["seed"].is_u64() && value["version"].is_string());
     }
 

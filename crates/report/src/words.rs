@@ -1,6 +1,7 @@
 //! A job's figures in words.
 
 use tracelight_eye::figures::EyeFigures;
+use tracelight_sim::LightFrom;
 use tracelight_task::counted;
 
 use crate::summary::Summary;
@@ -28,11 +29,16 @@ impl Summary {
         }
         text += &match self.laser.lit_s > 0.0 {
             true => format!(
-                "\nerror:  {:.3} mm rms, {:.3} mm at most; overshoot {:.2} %{}",
+                "\nerror:  {:.3} mm rms, {:.3} mm at most; overshoot {:.2} %{}{}",
                 self.tracking.rms_mm,
                 self.tracking.max_mm,
                 self.tracking.overshoot_percent,
                 self.tracking.final_error_mm.map_or_else(String::new, |mm| format!(", {mm:.3} mm at rest")),
+                if self.light_from == LightFrom::Encoders.name() {
+                    "; by the encoders, nobody saw the light"
+                } else {
+                    ""
+                },
             ),
             false => "\nerror:  none to measure, nothing was lit".to_owned(),
         };

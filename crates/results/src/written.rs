@@ -86,7 +86,7 @@ pub fn write(
         },
         seed: told.seed,
         dry_run: told.dry_run,
-        simulated: ran.simulated,
+        origin: ran.origin,
         eye: ran.eye.clone(),
         seen: ran.seen.as_ref(),
     };

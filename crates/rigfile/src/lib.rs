@@ -23,7 +23,7 @@ mod whole;
 
 pub use drives::{measured, set_law};
 pub use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
-pub use names::{emulated, is_port};
+pub use names::{at_port, emulated};
 pub use pages::PageName;
 pub use rig::{RigFile, parse, read, write};
 pub use save::saved;

@@ -190,29 +190,29 @@ impl<R: Rig> Session<R> {
 
     /// Lets the rig run for a tick; `None` once it is gone.
     pub fn tick(&mut self) -> Option<Telemetry> {
-        self.before_tick(&mut Untrimmed);
-        let Some(told) = self.rig.next() else {
-            self.running = None;
-            self.outbox.clear();
-            self.enter(State::Lost);
-            return None;
-        };
-        self.told = told;
-        self.follow();
-        Some(told)
+        self.tick_by(R::next, Option::as_ref, &mut Untrimmed)
     }
 
-    /// Lets a rig run for a tick that is always there, and tells more of it than its telemetry; the job's segments are trimmed on their way.
+    /// Lets a rig run for a tick that tells more of it than its telemetry, which is not there once the rig is gone; the job's segments are trimmed on their way.
     pub fn tick_by<T>(
         &mut self,
         step: impl FnOnce(&mut R) -> T,
-        telemetry: impl FnOnce(&T) -> &Telemetry,
+        telemetry: impl FnOnce(&T) -> Option<&Telemetry>,
         trim: &mut impl Trim,
     ) -> T {
         self.before_tick(trim);
         let tick = step(&mut self.rig);
-        self.told = *telemetry(&tick);
-        self.follow();
+        match telemetry(&tick) {
+            Some(&told) => {
+                self.told = told;
+                self.follow();
+            }
+            None => {
+                self.running = None;
+                self.outbox.clear();
+                self.enter(State::Lost);
+            }
+        }
         tick
     }
 

@@ -27,13 +27,18 @@ pub const AFTERMATH_TICKS: u32 = 200;
 /// Ticks a run may take beyond its plan and its longest hold before it is given up.
 const PATIENCE_TICKS: usize = 60_000;
 
+/// Ticks beyond a plan after which a run of such a rig is given up.
+pub(crate) fn patience_ticks(config: &RigConfig) -> usize {
+    PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize
+}
+
 /// How far beyond its range a joint comes up against its stop, rad.
 const STOP_RAD: f64 = 0.0175;
 
 /// What is known of one tick after it happened: what the controller saw, and where the light really was.
 ///
 /// In simulation `angle_rad`, `rate_rad_s`, `spot` and `light` are the plant's truth; on a real head they are the encoders'
-/// opinion and the gate. All of them are instants: the start of the tick.
+/// opinion and the gate ([`Origin`](crate::Origin) says which). All of them are instants: the start of the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
     /// The controller's side.
@@ -175,7 +180,7 @@ impl SimulatedRig {
             stretch_per_tick: 0.0,
             has_gyroscope: config.truth.gyroscope.fitted,
             coming: Vec::new(),
-            patience_ticks: PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize,
+            patience_ticks: patience_ticks(config),
         }
     }
 
@@ -376,7 +381,7 @@ pub fn tick<R: Simulated>(session: &mut Session<R>) -> Tick {
 
 /// Does the same with a job whose segments are moved on their way to the rig.
 pub fn tick_trimmed<R: Simulated>(session: &mut Session<R>, trim: &mut impl Trim) -> Tick {
-    session.tick_by(R::step, |tick| &tick.telemetry, trim)
+    session.tick_by(R::step, |tick| Some(&tick.telemetry), trim)
 }
 
 /// Returns a plan as a session takes it; a dry one is traced in the dark.

@@ -44,6 +44,22 @@ const MESSAGES: &[(&str, &str)] = &[
         "No board of Tracelight's answers at a port, or its line broke. See whether it has power, whether the cable holds, and whether Tracelight's program is loaded.",
     ),
     (
+        "rig-gone",
+        "A head does not answer any more: its cable is out, or its board lost power. The board darkens by itself. Put the cable in again, home the head if its board lost power, and go on with tracelight resume.",
+    ),
+    (
+        "disarmed",
+        "A head was disarmed while it drew, and not by this program: the connection to its board was interrupted. Go on with tracelight resume.",
+    ),
+    (
+        "not-armed",
+        "A real head is lit only after a person has armed it by the key A, and another key was pressed. Nothing was lit.",
+    ),
+    (
+        "no-light",
+        "A dot was asked for, and the head let no light out. The message names the reasons for darkness; each has its own explanation (tracelight explain host-silent).",
+    ),
+    (
         "align",
         "The marks of --align do not say where the drawing goes: they lie too near each other or on one line, mirror it, or are in a unit that the drawing does not have. Choose marks near the corners of the drawing; a DXF and a CSV have coordinates of their own, pictures are measured in px from the top left.",
     ),

@@ -1,18 +1,23 @@
 //! A job as the command line has it: a request from flags, its results in a folder.
 
+use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
 use tracelight_camera::{Opened, shown};
 use tracelight_eye::trouble::emulate;
 use tracelight_files::ResultFolder;
-use tracelight_job::{Prepared, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
+use tracelight_job::{
+    Hands, Head, Nobody, Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall,
+};
+use tracelight_operator::{AtWall, Attending};
 use tracelight_pipeline::told_places;
+use tracelight_port::{At, Device, head};
 use tracelight_report::{LogMeta, Summary};
 use tracelight_results::{self as results, Asked, Before, Records, Told, write};
+use tracelight_sim::ByEncoders;
 use tracelight_stroke::Vec2;
 use tracelight_task::{Failure, Stop, Task};
 
-use crate::at_wall::AtWall;
 use crate::bar::Bar;
 use crate::cli::by_hand::FrameName;
 use crate::cli::driving::stand_by;
@@ -55,7 +60,8 @@ fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<O
     let task = Task { progress: &bar, stop };
     args.check_camera()?;
     args.check_keys()?;
-    let (prepared, asked) = begun(args, earlier, task)?;
+    let (prepared, asked, at) = begun(args, earlier, task)?;
+    let device = at.map(|at| connected(args, &at, &prepared, task)).transpose()?;
     let dir = match &args.out {
         Some(dir) => dir.clone(),
         None => {
@@ -70,19 +76,7 @@ fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<O
     let meta = LogMeta { picture_path: &name, settings: &settings, seed: args.seed };
     let strokes = prepared.schedule.ordered.drawing.strokes.len();
     let mut kept = Records::begin(&folder, &asked, strokes, &meta)?;
-    let hands = AtWall::of(&args.by_hand, args.is_by_steps(), task, stop);
-    hands.iter().for_each(|hands| hands.preflight(&prepared.preflight(&named::today())));
-    let (prepared, mut ran) = match hands {
-        Some(mut hands) if args.is_by_steps() => prepared.run_steps(&mut kept, &mut hands, task)?,
-        Some(mut hands) => {
-            let ran = prepared.run_by_hand(&mut kept, &mut hands, task)?;
-            (prepared, ran)
-        }
-        None => {
-            let ran = prepared.run(&mut kept, task)?;
-            (prepared, ran)
-        }
-    };
+    let (prepared, mut ran) = ran(args, prepared, device, &mut kept, task)?;
     if let Some(remark) = kept.finish()? {
         task.say(&format!("note: {remark}"));
         ran.notes.push(remark);
@@ -103,25 +97,70 @@ fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<O
     Ok(Outcome { summary, dir, failure })
 }
 
+/// The head at a port. A real one is armed by a person, who has to be there.
+fn connected(
+    args: &TraceArgs,
+    at: &At,
+    prepared: &Prepared,
+    task: Task<'_>,
+) -> Result<ByEncoders<Device>, Failure> {
+    let mut device = head(at, &prepared.driving.rig, prepared.driving.pose, task.stop)?;
+    if device.rig().wants_a_person() && !args.dry_run && !std::io::stdin().is_terminal() {
+        let message = "a real head is lit only after a person has armed it by a key, and standard input is no terminal: start it in one, or with --dry-run";
+        return Err(Failure::usage("usage", message));
+    }
+    if !args.dry_run {
+        device.rig_mut().wait_for_light(task)?;
+    }
+    Ok(device)
+}
+
+/// Runs what is prepared, by the head at a port if there is one.
+fn ran(
+    args: &TraceArgs,
+    prepared: Prepared,
+    mut device: Option<ByEncoders<Device>>,
+    kept: &mut Records<'_>,
+    task: Task<'_>,
+) -> Result<(Prepared, Ran), Failure> {
+    let arms = device.as_ref().is_some_and(|device| device.rig().wants_a_person());
+    let how = args.by_hand.attending(args.is_by_steps(), device.is_some());
+    let mut at_wall = AtWall::of(Attending { arms, ..how }, task, task.stop);
+    at_wall.iter().for_each(|hands| hands.preflight(&prepared.preflight(&named::today())));
+    let (head, mut nobody) = (device.as_mut().map_or(Head::Simulated, |device| Head::Given(device)), Nobody);
+    let hands: &mut dyn Hands = at_wall.as_mut().map_or(&mut nobody, |hands| hands);
+    let (prepared, mut ran) = if args.is_by_steps() {
+        prepared.run_steps(head, (kept, hands), task)?
+    } else {
+        let ran = prepared.run_by_hand(head, (kept, hands), task)?;
+        (prepared, ran)
+    };
+    // it knows why it is gone
+    ran.failure = device.and_then(|device| device.rig().failure()).or(ran.failure);
+    Ok((prepared, ran))
+}
+
 /// What is to be run, and what is kept of what was asked: the whole of it, or the rest of earlier runs.
 fn begun(
     args: &TraceArgs,
     earlier: Option<&Earlier<'_>>,
     task: Task<'_>,
-) -> Result<(Prepared, Asked), Failure> {
-    let whole = prepared(args, task)?.from_stroke(args.from_stroke)?;
+) -> Result<(Prepared, Asked, Option<At>), Failure> {
+    let (whole, at) = prepared(args, task)?;
+    let whole = whole.from_stroke(args.from_stroke)?;
     let whole = if args.is_by_steps() { whole.by_steps(args.pace.map(|pace| pace.0))? } else { whole };
     let Some(Earlier { asked, runs, .. }) = earlier else {
         let asked = Asked::of(&args.typed, named::now(), args.cannot_resume().is_none(), &whole)?;
-        return Ok((whole, asked));
+        return Ok((whole, asked, at));
     };
     let (rest, asked) = asked.rest(whole, runs, named::now())?;
     rest.notes.last().iter().for_each(|note| task.say(&format!("note: {note}")));
-    Ok((rest, asked))
+    Ok((rest, asked, at))
 }
 
-fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
-    let mut driving = args.driving.resolve()?;
+fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<(Prepared, Option<At>), Failure> {
+    let (mut driving, at) = args.driving.resolve_head()?;
+    at.iter().try_for_each(|_| args.check_port())?;
     args.law.apply(&mut driving.rig)?;
     emulate(&mut driving.rig, &args.follow.sim_trouble, args.eye.camera.is_some())?;
     driving.order.sequence = args.sequence.sequence();
@@ -156,7 +195,7 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
             Some(told) => told,
             None => named::source(args.name(), &reading, &args.lettering)?,
         };
-        return prepare(&request, source, task);
+        return Ok((prepare(&request, source, task)?, at));
     }
     let mut opened = args.eye.open()?;
     let wall = Wall {
@@ -169,7 +208,7 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
         troubles: args.follow.sim_trouble.clone(),
         today: named::today(),
     };
-    prepare_wall(&request, wall, task)
+    Ok((prepare_wall(&request, wall, task)?, at))
 }
 
 /// Where images of the wall come from.

@@ -1,12 +1,10 @@
 //! Tracelight: give it a picture, and a pan/tilt laser head draws it on the wall, to scale.
 
-mod at_wall;
 mod bar;
 mod cli;
 mod fonts;
 mod interrupt;
 mod job;
-mod keys;
 mod named;
 mod settings;
 

@@ -3,6 +3,7 @@
 use tracelight_files as files;
 use tracelight_formats::ReadOptions;
 use tracelight_picture::{Pixels, Raster, Source, decode, decode_with};
+use tracelight_port::At;
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_rigfile::head::KnownHead;
@@ -62,9 +63,10 @@ pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
     if let Some(base) = rigfile::emulated(name) {
         return Ok(RigConfig { emulated: Some(Emulation::default()), ..rig(base)? });
     }
-    if rigfile::is_port(name) {
+    if let Some((port, _)) = rigfile::at_port(name, is_device) {
         let message = format!(
-            "{name}: no real head can be driven yet, only simulated ones: a preset that `tracelight rigs` lists, a rig file, or `emulated` for a board behind a wire; `tracelight doctor --rig {name}` looks at a board"
+            "{name} is a port, and this command drives no head: give a preset that `tracelight rigs` lists, or a rig file; `trace`, `point`, `home`, `jog` and `park` drive \
+             the head at a port, and `tracelight doctor --rig {port}` looks at its board"
         );
         return Err(Failure::usage("rig-file", message));
     }
@@ -78,6 +80,32 @@ pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
     let file = rigfile::read(name, files::read(name)?)?;
     file.remark.iter().for_each(|remark| say(remark));
     Ok(file.rig)
+}
+
+/// Likewise, or a port with the head that is there: `PORT` or `PORT:RIG`.
+pub(crate) fn rig_or_port(name: &str) -> Result<(RigConfig, Option<At>), Failure> {
+    let Some((port, head)) = rigfile::at_port(name, is_device) else { return Ok((rig(name)?, None)) };
+    let at = At { port: port.into(), is_said: head.is_some() };
+    match rig(head.unwrap_or("report"))? {
+        RigConfig { emulated: Some(_), .. } => {
+            let message = format!(
+                "{name}: a board is at {port}, none is to be emulated: give {port}:RIG with the head that it drives"
+            );
+            Err(Failure::usage("rig-file", message))
+        }
+        rig => Ok((rig, Some(at))),
+    }
+}
+
+/// Whether there is a device of that name to talk to, also by a link.
+fn is_device(name: &str) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt as _;
+        std::fs::metadata(name).is_ok_and(|is| is.file_type().is_char_device())
+    }
+    #[cfg(not(unix))]
+    false
 }
 
 /// A remark on standard error: files are read before there is a bar that it could disturb.

@@ -1,6 +1,7 @@
 use std::fmt::Write;
 
 use tracelight_chart::{ERROR_STEPS_MM, STEPS, error_step};
+use tracelight_sim::LightFrom;
 use tracelight_stroke::{Affine, Point};
 
 use super::axis::round_step;
@@ -8,6 +9,7 @@ use super::curve::tenth;
 use super::html::{escaped, jpeg_uri, number};
 use crate::error::EncodeError;
 use crate::finished::Finished;
+use crate::origin::told_by;
 use crate::sample::{Sample, samples};
 
 /// The longer side of the map in its own units; a tenth of one is kept.
@@ -33,9 +35,18 @@ pub(super) fn map(job: &Finished<'_>) -> Result<String, EncodeError> {
         layers = layers,
         numbers = numbers(job, &place) + &worst(job, &place),
         bar = bar(&place),
-        scale = scale("tracking error"),
+        scale = scale(&format!("tracking error{}", told_by(job.origin))),
+        heading = heading(job),
         name = escaped(&job.title()),
     ))
+}
+
+/// What the map shows.
+const fn heading(job: &Finished<'_>) -> &'static str {
+    match job.origin.light_from {
+        LightFrom::Simulation => "Where the light fell",
+        LightFrom::Encoders => "Where the encoders had the spot while lit",
+    }
 }
 
 /// Path data as paths, each in its error's colour.

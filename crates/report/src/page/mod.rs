@@ -17,10 +17,12 @@ mod tables;
 use std::fmt::Write;
 
 use tracelight_picture::Raster;
+use tracelight_sim::LightFrom;
 
 use self::html::{escaped, jpeg_uri};
 use crate::error::EncodeError;
 use crate::finished::Finished;
+use crate::origin::told_by;
 use crate::sample::samples;
 use crate::summary::Summary;
 
@@ -55,8 +57,20 @@ pub fn page(job: &Finished<'_>, figures: &Summary, painting: &Raster) -> Result<
         figures = tables::figures(job, figures),
         settings = tables::settings(job),
         strokes = strokes::section(job),
+        by = told_by(job.origin),
+        spot = spot(job),
         version = env!("CARGO_PKG_VERSION"),
     ))
+}
+
+/// The spot that errors are of.
+const fn spot(job: &Finished<'_>) -> &'static str {
+    match job.origin.light_from {
+        LightFrom::Simulation => "true spot",
+        LightFrom::Encoders => {
+            "where the encoders say that the spot is, on a target at the distance that was given,"
+        }
+    }
 }
 
 /// Where the spot was, thinned, for the cursor: `[[t_s, x_mm, y_mm, error_mm, lit], …]`, and the map's frame.
@@ -85,6 +99,7 @@ fn track(job: &Finished<'_>) -> String {
 mod tests {
     use super::*;
     use crate::{fixture, painting};
+    use tracelight_sim::Origin;
 
     fn text(job: &Finished<'_>) -> String {
         page(job, &Summary::new(job), &painting::paint(job)).unwrap()
@@ -133,14 +148,26 @@ mod tests {
     }
 
     #[test]
-    fn the_head_of_the_page_says_what_was_simulated_and_only_that() {
+    fn the_page_says_who_tells_where_the_spot_was() {
         let fixture = fixture::star();
         let mut job = fixture.job();
-        job.settings = &[];
-        let head = |job: &Finished<'_>| text(job).split("<main>").next().unwrap_or_default().to_owned();
-        assert!(head(&job).contains(">simulated</span>"));
-        job.simulated = false;
-        assert!(!head(&job).contains("</span><span"), "{}", head(&job));
+        let known = text(&job);
+        assert!(known.contains(">simulated</span>") && known.contains("tracking error: true spot against"));
+        job.origin = Origin { simulated: false, light_from: LightFrom::Encoders };
+        let believed = text(&job);
+        for words in [
+            ">by its encoders</span>",
+            "tracking error, rms, by the encoders",
+            "<caption>Tracking, by the encoders</caption>",
+            "Where the encoders had the spot while lit",
+            "the laser's gate was open for",
+            "tracking error, by the encoders: where the encoders say that the spot is",
+        ] {
+            assert!(believed.contains(words) && !known.contains(words), "{words}");
+        }
+        for words in ["Where the light fell", "light left the head", "true spot", ">simulated"] {
+            assert!(!believed.contains(words), "{words}");
+        }
     }
 
     #[test]

@@ -1,8 +1,10 @@
 use super::html::{escaped, number};
 use crate::events::events;
 use crate::finished::Finished;
+use crate::origin::{badge, told_by};
 use crate::summary::Summary;
 use tracelight_rig::Phase;
+use tracelight_sim::LightFrom;
 use tracelight_vision::Quality;
 
 const METRES_PER_INCH: f64 = 0.0254;
@@ -11,20 +13,29 @@ const METRES_PER_INCH: f64 = 0.0254;
 pub(super) fn tiles(job: &Finished<'_>, figures: &Summary) -> String {
     let t = &figures.tracking;
     let at_speed = t.at_speed_share * 100.0;
+    let by = told_by(job.origin);
     let tiles = [
-        (number(t.rms_mm, 4), "mm", "tracking error, rms"),
-        (number(t.max_mm, 4), "mm", "largest error while lit"),
-        (number(t.overshoot_percent, 3), "%", "overshoot past ends and corners"),
-        (at_rest(t.final_error_mm), "mm", "error at rest"),
-        (number(t.lit_speed_m_s, 4), "m/s", "speed of the lit spot"),
-        (number(at_speed, 3), "%", "of the lit time within 2 % of the set speed"),
-        (number(figures.run.duration_s, 3), "s", "for the whole job"),
-        (number(torque_peak(job) * 100.0, 3), "%", "of the torque used at most"),
+        (number(t.rms_mm, 4), "mm", format!("tracking error, rms{by}")),
+        (number(t.max_mm, 4), "mm", format!("largest error while lit{by}")),
+        (number(t.overshoot_percent, 3), "%", format!("overshoot past ends and corners{by}")),
+        (at_rest(t.final_error_mm), "mm", format!("error at rest{by}")),
+        (number(t.lit_speed_m_s, 4), "m/s", "speed of the lit spot".to_owned()),
+        (number(at_speed, 3), "%", "of the lit time within 2 % of the set speed".to_owned()),
+        (number(figures.run.duration_s, 3), "s", "for the whole job".to_owned()),
+        (number(torque_peak(job) * 100.0, 3), "%", "of the torque used at most".to_owned()),
     ];
-    let tile = |(value, unit, what): (String, &str, &str)| {
+    let tile = |(value, unit, what): (String, &str, String)| {
         format!(r#"<li><strong>{value}<small> {unit}</small></strong><span>{what}</span></li>"#)
     };
     tiles.into_iter().map(tile).collect()
+}
+
+/// What is known of light, where nobody saw it: that its gate was open.
+const fn lit_word(job: &Finished<'_>) -> &'static str {
+    match job.origin.light_from {
+        LightFrom::Simulation => "light left the head for",
+        LightFrom::Encoders => "the laser's gate was open for",
+    }
 }
 
 /// A run that ended before its drawing did has no error at rest.
@@ -56,10 +67,10 @@ pub(super) fn figures(job: &Finished<'_>, f: &Summary) -> String {
     let share = |x: f64| number(x * 100.0, 3);
     let lost = f.run.lost_counts;
     let groups = [
-        ("Picture and target", picture_rows(job, f)),
-        ("Quality of the picture", job.quality.map(quality_rows).unwrap_or_default()),
+        ("Picture and target".to_owned(), picture_rows(job, f)),
+        ("Quality of the picture".to_owned(), job.quality.map(quality_rows).unwrap_or_default()),
         (
-            "Plan",
+            "Plan".to_owned(),
             vec![
                 row("duration", number(f.plan.duration_s, 4), "s"),
                 row("lit", number(f.plan.lit_s, 4), "s"),
@@ -69,7 +80,7 @@ pub(super) fn figures(job: &Finished<'_>, f: &Summary) -> String {
             ],
         ),
         (
-            "Tracking",
+            format!("Tracking{}", told_by(job.origin)),
             vec![
                 row("spot to plan, rms", number(f.tracking.rms_mm, 4), "mm"),
                 row("spot to plan, largest", number(f.tracking.max_mm, 4), "mm"),
@@ -79,12 +90,12 @@ pub(super) fn figures(job: &Finished<'_>, f: &Summary) -> String {
                 row("final error", at_rest(f.tracking.final_error_mm), "mm"),
                 row("speed of the lit spot", number(f.tracking.lit_speed_m_s, 4), "m/s"),
                 row("lit time at the set speed ± 2 %", share(f.tracking.at_speed_share), "%"),
-                row("light left the head for", number(f.laser.lit_s, 4), "s"),
+                row(lit_word(job), number(f.laser.lit_s, 4), "s"),
                 row("lost counts put back, pan, tilt", format!("{}, {}", lost.pan, lost.tilt), ""),
             ],
         ),
         (
-            "Time to make",
+            "Time to make".to_owned(),
             vec![
                 row("picture to strokes", number(f.timing_ms.vision, 3), "ms"),
                 row("strokes to plan", number(f.timing_ms.plan, 3), "ms"),
@@ -93,7 +104,7 @@ pub(super) fn figures(job: &Finished<'_>, f: &Summary) -> String {
         ),
     ];
     let filled = groups.into_iter().filter(|(_, rows)| !rows.is_empty());
-    filled.map(|(title, rows)| group(title, &rows.concat())).collect()
+    filled.map(|(title, rows)| group(&title, &rows.concat())).collect()
 }
 
 fn picture_rows(job: &Finished<'_>, f: &Summary) -> Vec<String> {
@@ -167,13 +178,10 @@ pub(super) fn verdict(job: &Finished<'_>) -> (&'static str, String) {
     }
 }
 
-/// What says that nothing of the page was measured on a head; empty where it was.
-pub(super) fn origin(job: &Finished<'_>) -> &'static str {
-    if job.simulated {
-        r#"<span class="badge fair" title="The rig was one of equations: nothing moved, no light fell">simulated</span>"#
-    } else {
-        ""
-    }
+/// What says where the figures of the page come from.
+pub(super) fn origin(job: &Finished<'_>) -> String {
+    let (word, meaning) = badge(job.origin);
+    format!(r#"<span class="badge fair" title="{meaning}">{word}</span>"#)
 }
 
 /// Faults, darkenings and remarks in words.

@@ -6,10 +6,13 @@ use super::layout::{Layout, WIDTH};
 use super::lettering::{Align, Pen, fitted};
 use super::plane::Plane;
 use crate::finished::Finished;
+use crate::origin::badge;
 
 /// Height of a capital, px.
 const LARGE: f64 = 13.0;
 const SMALL: f64 = 10.5;
+/// Above the trace and its corner marks, in the margin: no exposure of a wall was taken.
+const ABOVE: f64 = 32.0;
 const CHALK: Pen = Pen { radius: 0.8, strength: 0.9 };
 const FAINT: Pen = Pen { radius: 0.7, strength: 0.55 };
 
@@ -20,9 +23,7 @@ pub(super) fn captions(job: &Finished<'_>, layout: &Layout) -> Plane {
     under_the_sheet(&mut chalk, job, layout);
     size_label(&mut chalk, job, layout);
     scale_bar(&mut chalk, layout);
-    if job.simulated {
-        origin(&mut chalk, layout);
-    }
+    CHALK.text(&mut chalk, badge(job.origin).0, SMALL, layout.wall.0 - Vec2::new(0.0, ABOVE), Align::Left);
     chalk
 }
 
@@ -42,12 +43,6 @@ fn corner_marks(chalk: &mut Plane, layout: &Layout) {
             FAINT.stroke(chalk, corner, corner - Vec2::new(0.0, sy * LENGTH));
         }
     }
-}
-
-/// Above the trace and its corner marks, in the margin: no exposure of a wall was taken.
-fn origin(chalk: &mut Plane, layout: &Layout) {
-    const ABOVE: f64 = 32.0;
-    CHALK.text(chalk, "simulated", SMALL, layout.wall.0 - Vec2::new(0.0, ABOVE), Align::Left);
 }
 
 fn under_the_sheet(chalk: &mut Plane, job: &Finished<'_>, layout: &Layout) {

@@ -110,6 +110,7 @@ impl Scene {
 mod tests {
     use super::*;
     use crate::fixture;
+    use tracelight_sim::{LightFrom, Origin};
 
     fn red_at(painting: &Raster, job: &Finished<'_>, number: usize) -> [u8; 3] {
         let layout = Layout::new(job);
@@ -138,11 +139,11 @@ mod tests {
     }
 
     #[test]
-    fn a_simulated_job_says_so_above_its_trace_and_nothing_else_of_it_changes() {
+    fn who_tells_where_the_spot_was_stands_above_the_trace_and_nothing_else_changes() {
         let fixture = fixture::star();
         let simulated = paint(&fixture.job());
         let mut job = fixture.job();
-        job.simulated = false;
+        job.origin = Origin { simulated: false, light_from: LightFrom::Encoders };
         let (real, layout) = (paint(&job), Layout::new(&job));
         let mut written = 0;
         for y in 0..i64::from(real.height()) {

@@ -127,6 +127,14 @@ pub struct ServedRig {
 }
 
 impl ServedRig {
+    /// Has the board say that it is of another kind, to practise with: whoever drives it asks a person to arm.
+    #[must_use]
+    pub fn posing_as(self, kind: u16) -> Self {
+        let identity =
+            Identity { board: kind, ..Identity::emulated(self.rig.capabilities(), Reset::PowerUp) };
+        Self { board: Box::new(Firmware::new(identity)), ..self }
+    }
+
     /// A millisecond in which these bytes came; what the board says, if it may.
     pub fn pass(&mut self, came: &[u8], may_say: bool) -> Vec<u8> {
         self.board.take(came, LAST_US);

@@ -14,6 +14,7 @@ mod faults;
 mod homing;
 mod inputs;
 mod jolts;
+mod observed;
 mod open_loop;
 mod paces;
 mod recovery;

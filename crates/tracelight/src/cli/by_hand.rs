@@ -1,6 +1,7 @@
 //! Whoever stands at the wall while the job runs.
 
 use clap::{Args, ValueEnum};
+use tracelight_operator::Attending;
 use tracelight_pipeline::Frame;
 use tracelight_units::{TIMES, parse};
 
@@ -22,6 +23,22 @@ pub(crate) struct ByHandArgs {
     /// Print one JSON object per line while the job runs: states, strokes, faults, progress
     #[arg(long, conflicts_with = "json")]
     pub(crate) events: bool,
+}
+
+impl ByHandArgs {
+    /// How somebody attends a job that goes stroke by stroke or not, of a rig that may keep time by itself.
+    pub(crate) fn attending(&self, steps: bool, keeps_time: bool) -> Attending {
+        let waits = steps && self.each.is_none() || self.frame.is_some();
+        Attending {
+            real_time: self.real_time.or(waits.then_some(1.0)),
+            keeps_time,
+            arms: false,
+            each_s: self.each,
+            framing: self.frame.is_some(),
+            steps,
+            events: self.events,
+        }
+    }
 }
 
 /// Frames of a drawing.

@@ -2,6 +2,7 @@ use clap::{Args, ValueEnum};
 use tracelight_aim::HeadPose;
 use tracelight_experiment::profile_name::ProfileName;
 use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, DistanceFrom, Driving, request_of};
+use tracelight_port::At;
 use tracelight_rigfile::head::KnownHead;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
@@ -27,8 +28,9 @@ pub(crate) struct DrivingArgs {
     /// Largest rounding of corners, such as 0.2mm; used where it is faster than a stop [default: none]
     #[arg(help_heading = "Time and order", long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = rounding)]
     pub(crate) corner: Option<Length>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file; emulated or emulated:RIG drives it by a board behind a wire
-    #[arg(help_heading = "Rig and law", long, value_name = "RIG.toml|PRESET", default_value = "report")]
+    /// Rig: a preset's name (see `tracelight rigs`) or a rig file; emulated or emulated:RIG drives it by a board behind a wire. PORT or PORT:RIG, such as
+    /// /dev/ttyACM0:my-head.toml, is the head at a board's port, for the commands that drive one
+    #[arg(help_heading = "Rig and law", long, value_name = "RIG.toml|PRESET|PORT", default_value = "report")]
     pub(crate) rig: String,
     /// Shape of the dark moves between strokes
     #[arg(help_heading = "Time and order", long, default_value = ProfileName::SCurve.name(), value_parser = profile())]
@@ -71,6 +73,12 @@ impl DrivingArgs {
     /// Reads the rig and gathers the rest.
     pub(crate) fn resolve(&self) -> Result<Driving, Failure> {
         Ok(self.resolve_on(named::rig(&self.rig)?))
+    }
+
+    /// Likewise of a rig that may be at a port, and that.
+    pub(crate) fn resolve_head(&self) -> Result<(Driving, Option<At>), Failure> {
+        let (rig, at) = named::rig_or_port(&self.rig)?;
+        Ok((self.resolve_on(rig), at))
     }
 
     /// Gathers the rest for a rig that was read: a plan is made for its masses.

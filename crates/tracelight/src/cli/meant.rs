@@ -12,7 +12,7 @@ const ENDINGS: [&str; 20] = [
 ];
 
 /// Commands of which people have heard, and that are not there yet.
-const COMING: [&str; 4] = ["studio", "jog", "home", "park"];
+const COMING: [&str; 1] = ["studio"];
 
 /// A command line with its command put in where it begins with a picture; `sim:PICTURE` is a camera that sees one. The first argument is the
 /// program, as everywhere.

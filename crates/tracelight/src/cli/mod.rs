@@ -19,6 +19,7 @@ pub(crate) mod laws;
 pub(crate) mod lettering;
 mod man;
 mod meant;
+mod moving;
 pub(crate) mod ordering;
 pub(crate) mod placing;
 mod plan;
@@ -72,6 +73,9 @@ enum Command {
     Strokes(Box<strokes::StrokesArgs>),
     Plan(Box<plan::PlanArgs>),
     Point(Box<point::PointArgs>),
+    Home(moving::HomeArgs),
+    Jog(moving::JogArgs),
+    Park(moving::ParkArgs),
     Calibrate(calibrate::CalibrateArgs),
     Lab(lab::LabArgs),
     Doctor(doctor::DoctorArgs),
@@ -127,6 +131,9 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Strokes(args) => (args.voice, strokes::run(args, stop)),
         Command::Plan(args) => (args.voice, plan::run(args, stop)),
         Command::Point(args) => (args.voice, point::run(args, traced, stop)),
+        Command::Home(args) => (args.head.voice, moving::home(args, stop)),
+        Command::Jog(args) => (args.head.voice, moving::jog(args, stop)),
+        Command::Park(args) => (args.head.voice, moving::park(args, stop)),
         Command::Calibrate(args) => (args.voice(), calibrate::run(args, stop)),
         Command::Lab(args) => (args.voice(), lab::run(args, answer_to, stop)),
         Command::Doctor(args) => (args.voice, doctor::run(args, stop)),

@@ -153,6 +153,24 @@ impl TraceArgs {
         }
     }
 
+    /// Refuses of a head at a port what only a simulated one can do.
+    pub(crate) fn check_port(&self) -> Result<(), Failure> {
+        let flags = [
+            ("--camera", self.eye.camera.is_some(), "a real camera does not follow a real head yet"),
+            ("--laps", self.laps > 1, "what is identified between laps is not sent to a board yet"),
+            ("--sim-trouble", !self.follow.sim_trouble.is_empty(), "that goes wrong in simulations alone"),
+            ("--sim-unhomed", self.sim_unhomed, "that is for simulated heads"),
+            ("--real-time", self.by_hand.real_time.is_some(), "a board keeps real time by itself"),
+        ];
+        match flags.into_iter().find(|(_, is_set, _)| *is_set) {
+            Some((flag, _, why)) => {
+                let message = format!("{flag} with --rig {}: {why}; leave it out", self.driving.rig);
+                Err(Failure::usage("usage", message))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Why a run of it cannot be gone on with, and what to do; nothing where it can.
     pub(crate) fn cannot_resume(&self) -> Option<String> {
         let anew = format!("begin anew with tracelight {}", self.typed.join(" "));

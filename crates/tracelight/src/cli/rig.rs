@@ -2,8 +2,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use tracelight_aim::HeadPose;
+use tracelight_eye::room::left;
 use tracelight_pipeline::DEFAULT_DISTANCE_M;
 use tracelight_port::{Serving, serve};
+use tracelight_rig::wire::Greeting;
+use tracelight_sim::SimulatedRig;
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::bar::Bar;
@@ -39,6 +42,12 @@ struct ServeArgs {
     /// Draws what differs from head to head
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// The head was just powered up anywhere, and does not know where it points
+    #[arg(long)]
+    sim_unhomed: bool,
+    /// The board says that it is a Pico 2, to practise with: whoever drives its head asks a person to arm
+    #[arg(long)]
+    sim_real: bool,
     #[command(flatten)]
     voice: Voice,
 }
@@ -54,8 +63,11 @@ impl RigArgs {
 pub(crate) fn run(args: &RigArgs, stop: &Stop) -> Result<Answer, Failure> {
     let RigAction::Serve(args) = &args.action;
     let bar = Bar::new(args.voice.quiet);
-    let (config, pose) = (&named::rig(&args.rig)?, HeadPose::square_on(DEFAULT_DISTANCE_M));
-    let serving = Serving { config, pose, seed: args.seed, at: &args.pty, lasts_s: args.lasts_s };
-    let served = serve(&serving, Task { progress: &bar, stop })?;
+    let config = named::rig(&args.rig)?;
+    let put_up = if args.sim_unhomed { left } else { SimulatedRig::new };
+    let rig = put_up(&config, HeadPose::square_on(DEFAULT_DISTANCE_M), args.seed).served();
+    let rig = if args.sim_real { rig.posing_as(Greeting::PICO_2) } else { rig };
+    let serving = Serving { rig, name: &config.name, at: &args.pty, lasts_s: args.lasts_s };
+    let served = serve(serving, Task { progress: &bar, stop })?;
     Ok(Answer::new(served.text(), served.json().to_string()))
 }

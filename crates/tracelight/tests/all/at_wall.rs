@@ -15,16 +15,16 @@ use crate::support::{folder, program, rows, run};
 const LONGEST: Duration = Duration::from_secs(180);
 
 /// A program with a terminal of its own as standard input, whose events are read.
-struct Terminal {
+pub(crate) struct Terminal {
     keyboard: File,
-    child: Child,
+    pub(crate) child: Child,
     told: Receiver<String>,
     seen: Vec<String>,
     until: Instant,
 }
 
 impl Terminal {
-    fn of(mut command: Command) -> Self {
+    pub(crate) fn of(mut command: Command) -> Self {
         let pty = nix::pty::openpty(None, None).unwrap();
         let mut child = command
             .stdin(File::from(pty.slave))
@@ -44,12 +44,12 @@ impl Terminal {
         }
     }
 
-    fn press(&mut self, keys: &str) {
+    pub(crate) fn press(&mut self, keys: &str) {
         self.keyboard.write_all(keys.as_bytes()).unwrap();
     }
 
     /// Reads on to an event that is wanted.
-    fn until(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+    pub(crate) fn until(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
         while let Ok(line) = self.told.recv_timeout(self.until.saturating_duration_since(Instant::now())) {
             let event: Value = serde_json::from_str(&line).unwrap();
             // of progress there are hundreds
@@ -64,7 +64,7 @@ impl Terminal {
         panic!("what is awaited was not told within {LONGEST:?}:\n{}", self.seen.join("\n"));
     }
 
-    fn until_state(&mut self, state: &str) {
+    pub(crate) fn until_state(&mut self, state: &str) {
         self.until(|event| event["event"] == "state" && event["to"] == state);
     }
 }

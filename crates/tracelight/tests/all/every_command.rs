@@ -6,12 +6,16 @@ use std::path::Path;
 use serde_json::Value;
 use unicode_width::UnicodeWidthStr;
 
-use crate::support::{folder, program, run};
+use crate::ports::Served;
+use crate::support::{program, run};
 
-/// A line of every command; `@` is a folder.
+/// A line of every command; `@` is a folder, in which an emulated board is served.
 const LINES: &[&str] = &[
     "doctor",
-    "rig serve --pty @/head --for 0.5s",
+    "rig serve --pty @/pty --for 0.5s",
+    "jog 2deg,1deg --rig @/board",
+    "home --rig @/board",
+    "park --rig @/board",
     "rigs",
     "rigs show report",
     "explain",
@@ -107,12 +111,13 @@ fn no_command_is_left_out() {
 #[test]
 fn what_a_command_prints_fits_eighty_columns() {
     const COLUMNS: usize = 80;
-    let dir = folder("eighty");
+    let served = Served::new("eighty", &["--sim-unhomed"]);
+    let dir = &served.dir;
     let mut wide = Vec::new();
     // what becomes a file keeps its lines
     for line in LINES.iter().filter(|line| !line.starts_with("completions") && !line.starts_with("rigs show"))
     {
-        let output = program().args(words(line, &dir)).env("COLUMNS", COLUMNS.to_string()).output().unwrap();
+        let output = program().args(words(line, dir)).env("COLUMNS", COLUMNS.to_string()).output().unwrap();
         let text = String::from_utf8(output.stdout).unwrap();
         assert!(!text.is_empty(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
         // a path is as long as it is
@@ -136,9 +141,10 @@ fn keys(value: &Value, into: &mut BTreeSet<String>) {
 
 #[test]
 fn every_answer_is_one_object_whose_keys_have_no_spaces() {
-    let dir = folder("objects");
+    let served = Served::new("objects", &["--sim-unhomed"]);
+    let dir = &served.dir;
     for line in LINES {
-        let output = program().args(words(line, &dir)).arg("--json").output().unwrap();
+        let output = program().args(words(line, dir)).arg("--json").output().unwrap();
         let object: Value = serde_json::from_slice(&output.stdout)
             .unwrap_or_else(|e| panic!("{line}: {e}: {}", String::from_utf8_lossy(&output.stderr)));
         assert!(object.is_object(), "{line}");

@@ -39,6 +39,7 @@ mod make_examples;
 mod net_camera;
 mod own_logs;
 mod paper;
+mod ports;
 mod preview;
 mod quality;
 #[cfg(unix)]

@@ -14,7 +14,7 @@ use crate::house_rules::sources;
 use crate::support::{folder, root};
 
 /// Lines that cannot run here, exactly as they stand, and why.
-const NOT_RUN: [(&str, &str); 8] = [
+const NOT_RUN: [(&str, &str); 15] = [
     ("cargo test --workspace", "it runs this test"),
     ("cargo run --release -p tracelight-job --example picture_to_figures", "cargo"),
     ("tracelight doctor", "looks at the cameras that are plugged in"),
@@ -22,6 +22,13 @@ const NOT_RUN: [(&str, &str); 8] = [
     ("tracelight doctor --camera http://192.168.1.20:8080/video", "a camera on the net"),
     ("tracelight trace --camera /dev/video0", "a real camera"),
     ("tracelight doctor --rig /dev/ttyACM0", "a real board"),
+    ("tracelight jog 3deg,0deg --dot 2s --rig /dev/ttyACM0:my-head.toml", "a real board"),
+    ("tracelight home --rig /dev/ttyACM0:my-head.toml", "a real board"),
+    ("tracelight jog 5deg,0deg --rig /dev/ttyACM0", "a real board"),
+    ("tracelight jog 10cm,-2cm --rig /dev/ttyACM0:my-head.toml --distance 2m", "a real board"),
+    ("tracelight jog --to 30cm,20cm --rig /dev/ttyACM0", "a real board"),
+    ("tracelight jog 2deg,0deg --dot 1s --rig /dev/ttyACM0", "a real board"),
+    ("tracelight park --rig /dev/ttyACM0", "a real board"),
     ("tracelight completions bash > /etc/bash_completion.d/tracelight", "writes into the system's folders"),
 ];
 

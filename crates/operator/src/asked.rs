@@ -1,0 +1,29 @@
+//! A question that a key answers.
+
+use std::io::IsTerminal as _;
+
+use tracelight_task::{Failure, Task};
+
+use crate::keys::{Key, Keys};
+
+/// Asks whoever is at the terminal for light: the key A allows it. `hold` waits, with the head in its hands, until the key that is looked for has come.
+///
+/// # Errors
+/// `usage`: standard input is no terminal; `not-armed`: another key was pressed; what `hold` fails by.
+pub fn asked(
+    question: &str,
+    task: Task<'_>,
+    hold: impl FnOnce(&mut dyn FnMut() -> Option<bool>) -> Result<bool, Failure>,
+) -> Result<(), Failure> {
+    let keys = if std::io::stdin().is_terminal() { Keys::listen() } else { None };
+    let Some(keys) = keys else {
+        let message = "a real head is lit only after a person has armed it by a key, and standard input is no terminal: start it in one";
+        return Err(Failure::usage("usage", message));
+    };
+    task.say(question);
+    let is_allowed = hold(&mut || keys.next().map(|key| key == Key::Char('a')))?;
+    if is_allowed {
+        return Ok(());
+    }
+    Err(Failure::failed("not-armed", "nobody armed it: no light was let out"))
+}

@@ -1,0 +1,245 @@
+//! A head at a port that is moved by hand: homed where it rests, jogged, parked.
+
+use std::str::FromStr;
+
+use clap::Args;
+use serde_json::json;
+use tracelight_aim::HeadPose;
+use tracelight_job::{Jog, Mover, Place};
+use tracelight_operator::asked;
+use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, Driving, request_of};
+use tracelight_port::{At, head};
+use tracelight_rig::PanTilt;
+use tracelight_sim::Observed as _;
+use tracelight_stroke::{Point, Vec2};
+use tracelight_task::{Failure, Stop, Task};
+use tracelight_units::{Angle, Length, Offset, TIMES, parse};
+
+use crate::bar::Bar;
+use crate::cli::answer::{Answer, Voice};
+use crate::cli::driving::stand_by;
+use crate::cli::placing::positive_length;
+use crate::named;
+
+/// The head at a port, and where it stands.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct HeadArgs {
+    /// Port of its board, and its rig: PORT or PORT:RIG, such as /dev/ttyACM0:my-head.toml
+    #[arg(long, value_name = "PORT")]
+    rig: String,
+    /// Distance from the head to the target [default: 3ft]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length, conflicts_with = "stands")]
+    distance: Option<Length>,
+    /// Where the head stands, as `calibrate corners` or `calibrate head` has found it
+    #[arg(id = "stands", long = "head", value_name = "FILE.toml")]
+    stands: Option<String>,
+    #[command(flatten)]
+    pub(crate) voice: Voice,
+}
+
+/// Tell a head that it points straight ahead now, or where it points
+///
+/// A head whose encoders count from where they are powered up does not know where it points. Jog it until it points straight ahead, with a dot to see it
+/// by, then this makes that its zero. It is known until the board loses power, also to programs that come later.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example: tracelight jog 3deg,0deg --dot 2s --rig /dev/ttyACM0:my-head.toml\n         \
+                  tracelight home --rig /dev/ttyACM0:my-head.toml"
+)]
+pub(crate) struct HomeArgs {
+    /// Where it points instead: pan to the left and tilt down, such as 10deg,-5deg [default: straight ahead]
+    #[arg(long, value_name = "PAN,TILT", allow_hyphen_values = true)]
+    at: Option<Angles>,
+    #[command(flatten)]
+    pub(crate) head: HeadArgs,
+}
+
+/// Turn a head in the dark: by angles, or by a way on the target
+#[derive(Args, Debug)]
+#[command(after_help = "Examples: tracelight jog 5deg,0deg --rig /dev/ttyACM0\n          \
+                  tracelight jog 10cm,-2cm --rig /dev/ttyACM0:my-head.toml --distance 2m\n          \
+                  tracelight jog --to 30cm,20cm --rig /dev/ttyACM0\n          \
+                  tracelight jog 2deg,0deg --dot 1s --rig /dev/ttyACM0\n\n\
+                  A head that is not homed is turned by angles alone, from where it is, no more than 30 degrees at once.")]
+pub(crate) struct JogArgs {
+    /// By angles, pan to the left and tilt down, such as 5deg,-2deg; or right and up on the target, such as 10cm,5cm
+    #[arg(
+        value_name = "BY",
+        allow_hyphen_values = true,
+        required_unless_present = "to",
+        conflicts_with = "to"
+    )]
+    by: Option<Way>,
+    /// To a place on the target, right and up of its middle, such as 30cm,20cm
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    to: Option<Offset>,
+    /// Then let out a dot of light for this long, such as 2s, to see where a head is that is not homed; at a real head a key allows it
+    #[arg(long, value_name = "TIME", value_parser = dot)]
+    dot: Option<f64>,
+    #[command(flatten)]
+    pub(crate) head: HeadArgs,
+}
+
+/// Return a head to straight ahead, in the dark
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight park --rig /dev/ttyACM0")]
+pub(crate) struct ParkArgs {
+    #[command(flatten)]
+    pub(crate) head: HeadArgs,
+}
+
+/// Two angles: pan to the left, tilt down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Angles(PanTilt<f64>);
+
+impl FromStr for Angles {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("{text} is not two angles; give pan and tilt such as 5deg,-2deg");
+        let (pan, tilt) = text.split_once(',').ok_or_else(wrong)?;
+        let angle = |text: &str| text.trim().parse::<Angle>().map_err(|e| e.to_string());
+        Ok(Self(PanTilt::new(angle(pan)?.0, angle(tilt)?.0)))
+    }
+}
+
+/// A way to go: by two angles, or by two lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Way(Jog);
+
+impl FromStr for Way {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let angles = text.parse::<Angles>().map(|Angles(by)| Self(Jog::Angles(by)));
+        let lengths = || text.parse::<Offset>().map(|Offset(x, y)| Self(Jog::By(Vec2::new(x.0, y.0))));
+        angles.or_else(|_| lengths()).map_err(|_| {
+            format!(
+                "{text} is no way to go; give two angles such as 5deg,-2deg, or two lengths such as 10cm,5cm"
+            )
+        })
+    }
+}
+
+/// How long a dot lasts, s.
+fn dot(text: &str) -> Result<f64, String> {
+    const RANGE: std::ops::RangeInclusive<f64> = 0.05..=60.0;
+    let time_s = parse(text, TIMES).map_err(|e| e.to_string())?;
+    let wrong = || format!("{text} is not between {} s and {} s", RANGE.start(), RANGE.end());
+    RANGE.contains(&time_s).then_some(time_s).ok_or_else(wrong)
+}
+
+pub(crate) fn home(args: &HomeArgs, stop: &Stop) -> Result<Answer, Failure> {
+    let at = args.at.map_or(PanTilt::new(0.0, 0.0), |Angles(at)| at);
+    args.head.moved(stop, |mover, _| Ok((mover.home(at)?, None)))
+}
+
+pub(crate) fn park(args: &ParkArgs, stop: &Stop) -> Result<Answer, Failure> {
+    args.head.moved(stop, |mover, _| Ok((mover.park()?, None)))
+}
+
+pub(crate) fn jog(args: &JogArgs, stop: &Stop) -> Result<Answer, Failure> {
+    let to = args.to.map(|Offset(x, y)| Jog::To(Point::new(x.0, y.0)));
+    args.head.moved(stop, |mover, (arms, task)| {
+        if args.dot.is_some() {
+            mover.check_dot()?;
+        }
+        let place = match to.or(args.by.map(|Way(by)| by)) {
+            Some(jog) => mover.jog(jog)?,
+            None => mover.place(),
+        };
+        let Some(lasts_s) = args.dot else { return Ok((place, None)) };
+        if arms {
+            asked(
+                &format!("{}; A lets a dot out there for {lasts_s} s, any other key none", words(&place)),
+                task,
+                |wait| mover.hold(wait),
+            )?;
+        }
+        Ok((place, Some(mover.dot(lasts_s)?)))
+    })
+}
+
+impl HeadArgs {
+    /// Does something with the head, and tells where it rests then.
+    fn moved(
+        &self,
+        stop: &Stop,
+        what: impl FnOnce(&mut Mover<'_>, (bool, Task<'_>)) -> Result<(Place, Option<f64>), Failure>,
+    ) -> Result<Answer, Failure> {
+        let bar = Bar::new(self.voice.quiet);
+        let task = Task { progress: &bar, stop };
+        let (driving, at) = self.driving()?;
+        let _kept = stop.keep();
+        let mut device = head(&at, &driving.rig, driving.pose, stop)?;
+        let (origin, arms) = (device.origin(), device.rig().wants_a_person());
+        let moved =
+            Mover::new(&mut device, &driving, task).and_then(|mut mover| what(&mut mover, (arms, task)));
+        // it knows why it is gone
+        let (place, dot_s) = moved.map_err(|why| device.rig().failure().unwrap_or(why))?;
+        let lit = dot_s.map_or_else(String::new, |s| format!("; its gate was open for {s:.2} s"));
+        let spot_mm = place.spot.map(|spot| [1e3 * spot.x, 1e3 * spot.y]);
+        let json = json!({
+            "homed": place.homed, "pan_deg": place.angle_rad.pan.to_degrees(), "tilt_deg": place.angle_rad.tilt.to_degrees(),
+            "spot_mm": spot_mm, "light_from": origin.light_from.name(), "simulated": origin.simulated, "gate_open_s": dot_s,
+        });
+        Ok(Answer::new(words(&place) + &lit, json.to_string()))
+    }
+
+    fn driving(&self) -> Result<(Driving, At), Failure> {
+        let (rig, at) = named::rig_or_port(&self.rig)?;
+        let Some(at) = at else {
+            let message = format!(
+                "--rig {}: a simulated head ends with the program that has it; give the port of a board, such as /dev/ttyACM0, or that of an emulated one, which stays \
+                 (tracelight rig serve --pty out/head)",
+                self.rig
+            );
+            return Err(Failure::usage("usage", message));
+        };
+        let pose = HeadPose::square_on(self.distance.map_or(DEFAULT_DISTANCE_M, |d| d.0));
+        let request = request_of(&rig);
+        let mut driving = Driving::new(rig, pose, request, Asked::default());
+        let known = self.stands.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
+        known.iter().for_each(|known| stand_by(&mut driving, known));
+        Ok((driving, at))
+    }
+}
+
+/// To a tenth of a millimetre, without a sign of nothing, mm.
+fn tenths(m: f64) -> f64 {
+    (1e4 * m).round() / 10.0 + 0.0
+}
+
+/// Where a head rests, in words.
+fn words(place: &Place) -> String {
+    let PanTilt { pan, tilt } = place.angle_rad.map(f64::to_degrees);
+    // nobody reads a sign of nothing
+    let [pan, tilt] = [pan, tilt].map(|angle| (100.0 * angle).round() / 100.0 + 0.0);
+    let angles = format!("pan {pan:.2}°, tilt {tilt:.2}°");
+    match (place.homed, place.spot) {
+        (false, _) => format!("the head is not homed; it is at {angles} from where it was powered up"),
+        (true, Some(spot)) => format!(
+            "the head is at {angles}: by its encoders its beam meets the target at {:.1}, {:.1} mm",
+            tenths(spot.x),
+            tenths(spot.y)
+        ),
+        (true, None) => format!("the head is at {angles}: by its encoders its beam misses the target"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ways_are_angles_or_lengths() {
+        let way = |text: &str| text.parse::<Way>().map(|Way(jog)| jog);
+        assert_eq!(way("10cm,-5mm"), Ok(Jog::By(Vec2::new(0.1, -0.005))));
+        let Ok(Jog::Angles(by)) = way("-10deg, 20deg") else { unreachable!() };
+        assert!((by.pan.to_degrees() + 10.0).abs() < 1e-9 && (by.tilt.to_degrees() - 20.0).abs() < 1e-9);
+        for text in ["10cm", "10cm,5deg", "5,5", "", "1cm,2cm,3cm", "nan,nan"] {
+            assert!(way(text).unwrap_err().contains("two angles such as"), "{text}");
+        }
+        assert!(dot("0s").is_err() && dot("61s").is_err() && dot("2s") == Ok(2.0));
+    }
+}
