@@ -46,8 +46,8 @@ impl<const SEGMENTS: usize, const ROWS: usize> Board<SEGMENTS, ROWS> {
     /// One tick: what the head senses at its start, and what is done until the next.
     pub fn tick(&mut self, sensed: &Sensed) -> Actuation {
         let Self { server, machine } = self;
-        let inbox = server.inbox();
-        let (actuation, told) = machine.tick(sensed, &inbox, |may| server.next_order(may));
+        let (new, inbox) = (server.new_configuration(), server.inbox());
+        let (actuation, told) = machine.tick(sensed, (new.as_ref(), &inbox), |may| server.next_order(may));
         server.ticked(machine.tick_number(), machine.nonce());
         if let Some(told) = told {
             server.told(&told);

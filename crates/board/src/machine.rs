@@ -20,8 +20,6 @@ pub struct Inbox {
     pub heard: bool,
     /// A Disarm.
     pub disarm: Option<Disarm>,
-    /// A configuration with which the controller begins anew.
-    pub configuration: Option<NewConfiguration>,
 }
 
 /// A Disarm that came.
@@ -125,18 +123,18 @@ impl<const SEGMENTS: usize> Machine<SEGMENTS> {
         spoilt.is_some()
     }
 
-    /// One tick: takes what came, `next` order by order, and lets the controller run. `next` is told what it may give: a segment only if there is room for one, and
+    /// One tick: begins anew with a configuration if there is one, takes what came, `next` order by order, and lets the controller run. `next` is told what it may give: a segment only if there is room for one, and
     /// one order a tick that lets light out. Without a configuration nothing moves and nothing is lit, and there is nothing to tell.
     pub fn tick(
         &mut self,
         sensed: &Sensed,
-        inbox: &Inbox,
+        (new, inbox): (Option<&NewConfiguration>, &Inbox),
         mut next: impl FnMut(May) -> Option<Order>,
     ) -> (Actuation, Option<Told>) {
         let tick = self.tick;
         self.tick = tick.wrapping_add(1);
         let sensed = as_told(sensed);
-        let began = inbox.configuration.as_ref().map(|new| self.begin(new, &sensed, tick));
+        let began = new.map(|new| self.begin(new, &sensed, tick));
         let Some((controller, state)) = &mut self.running else { return (Actuation::default(), None) };
         if inbox.heard {
             // none of what is taken here can fail for want of room
@@ -168,7 +166,17 @@ impl<const SEGMENTS: usize> Machine<SEGMENTS> {
         (actuation, Some(Told { tick, row: row.told(), free, phase, latched, fault_number, disarm, began }))
     }
 
+    /// Begins with the first configuration since the board started.
+    #[inline(never)]
+    #[cold]
+    fn begin_first(&mut self, controller: Controller, start: &Start, sensed: &Sensed) {
+        let (_, state) = self.running.insert((controller, controller.start(sensed)));
+        start.apply(&controller, state);
+    }
+
     /// Begins anew with a configuration. A head that was homed is told where it stands, if it is held to be where it was; what is known of motors and light is kept.
+    // its state, which is large, is not to lie in the stack of every tick
+    #[inline(never)]
     fn begin(&mut self, new: &NewConfiguration, sensed: &Sensed, tick: u32) -> Configured {
         let &NewConfiguration { config, is_absolute, crc, law } = new;
         let before = self.state();
@@ -177,9 +185,15 @@ impl<const SEGMENTS: usize> Machine<SEGMENTS> {
         let home = before.filter(|_| is_alike && !is_absolute).and_then(|state| state.homed_at(sensed));
         let carried = before.map(State::carried);
         let controller = Controller::new(config);
-        let state = Start { tick, is_absolute, home, carried }.state(&controller, sensed);
-        let home = home.filter(|_| state.is_homed());
-        self.running = Some((controller, state));
+        let start = Start { tick, is_absolute, home, carried };
+        match &mut self.running {
+            Some((running, state)) => {
+                *running = controller;
+                start.renew(&controller, sensed, state);
+            }
+            None => self.begin_first(controller, &start, sensed),
+        }
+        let home = home.filter(|_| self.state().is_some_and(State::is_homed));
         self.void_before = None;
         let shut_ticks = carried.map_or(u32::MAX, |carried| carried.shut_ticks);
         Configured { crc, tick, law, home, heat: carried.map(|carried| carried.heat), shut_ticks }

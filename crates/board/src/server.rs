@@ -67,6 +67,8 @@ pub struct Server<const SEGMENTS: usize, const ROWS: usize> {
     /// Number of the order that comes next.
     wanted: u16,
     inbox: Inbox,
+    /// A configuration with which the controller begins anew in the next tick.
+    new: Option<NewConfiguration>,
     /// What came of a configuration.
     upload: [u8; MOST_CONFIGURATION],
     /// Checksum of the one in force.
@@ -113,7 +115,8 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
             is_other: false,
             orders: Orders::new(),
             wanted: 0,
-            inbox: Inbox { heard: false, disarm: None, configuration: None },
+            inbox: Inbox { heard: false, disarm: None },
+            new: None,
             upload: [0; MOST_CONFIGURATION],
             configuration: None,
             answered: None,
@@ -233,13 +236,18 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
         }
         let config = read_configuration(bytes)?;
         self.is_coming = true;
-        self.inbox.configuration = Some(NewConfiguration {
+        self.new = Some(NewConfiguration {
             config,
             is_absolute: self.identity.capabilities.absolute,
             crc,
             law: law_hash(&config),
         });
         Ok(())
+    }
+
+    /// A configuration that came. It is large: who asks in every tick whether there is one does not copy it.
+    pub fn new_configuration(&mut self) -> Option<NewConfiguration> {
+        if self.new.is_some() { self.new.take() } else { None }
     }
 
     /// What came for the next tick, beside orders.

@@ -19,15 +19,34 @@ pub struct Start {
 impl Start {
     /// The state before the first tick, in which this is sensed. Homed, if the encoders are absolute or the head can be where it is told to stand.
     pub fn state<const SEGMENTS: usize>(&self, controller: &Controller, sensed: &Sensed) -> State<SEGMENTS> {
-        let state = if self.is_absolute { controller.start_homed(sensed) } else { controller.start(sensed) };
-        let mut state: State<SEGMENTS> = state.counting_from(self.tick);
+        let mut state = controller.start(sensed);
+        self.apply(controller, &mut state);
+        state
+    }
+
+    /// Makes a state that one, in place.
+    pub fn renew<const SEGMENTS: usize>(
+        &self,
+        controller: &Controller,
+        sensed: &Sensed,
+        state: &mut State<SEGMENTS>,
+    ) {
+        controller.restart(state, sensed);
+        self.apply(controller, state);
+    }
+
+    /// What is different from a head that was just powered up.
+    pub(crate) fn apply<const SEGMENTS: usize>(&self, controller: &Controller, state: &mut State<SEGMENTS>) {
+        state.count_from(self.tick);
+        if self.is_absolute {
+            controller.trust(state);
+        }
         if let Some(home) = self.home {
             // what cannot be is refused, and then it is not homed
-            let _ = controller.accept(&mut state, Command::Home(home));
+            let _ = controller.accept(state, Command::Home(home));
         }
         if let Some(carried) = &self.carried {
-            controller.carry(&mut state, carried);
+            controller.carry(state, carried);
         }
-        state
     }
 }

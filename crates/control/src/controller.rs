@@ -58,6 +58,24 @@ impl Controller {
         }
     }
 
+    /// Makes a state that of a head as in [`start`](Self::start), in place: with its queue it is too large for the stack of a tick.
+    pub fn restart<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, sensed: &Sensed) {
+        // every field: whoever adds one adds it here
+        let State { tick, fresh, sensed: last, servo, watch, player, supervisor, budget, .. } = state;
+        (*tick, *fresh, *last) = (0, true, *sensed);
+        *servo = Servo::at_rest(&self.config, &sensed.encoders);
+        *watch = Watch::new(&self.config, sensed, servo.estimates());
+        player.begin_anew(servo.position_rad());
+        (*supervisor, *budget) = (Supervisor::default(), LightBudget::new());
+        let State { way_back, paces, test_move, home, .. } = state;
+        (*way_back, *paces, *test_move, *home) = (None, PanTilt::default(), None, PanTilt::default());
+    }
+
+    /// Takes the encoders of a state that has just begun to count from zero: it is homed.
+    pub fn trust<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>) {
+        state.supervisor.home();
+    }
+
     /// Has a state that has just begun remember what the one before it knew of the head; where light fell then is not known any more, so it may have been anywhere.
     pub fn carry<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, carried: &Carried) {
         state.watch.set_heat(carried.heat);
@@ -184,7 +202,7 @@ impl Controller {
         }
         state.servo = Servo::at_rest(&self.config, &state.sensed.encoders);
         state.watch.rearm(&self.config, &state.sensed, state.servo.estimates());
-        state.player = state.player.resting_anew(state.servo.position_rad());
+        state.player.rest_at(state.servo.position_rad());
         state.way_back = None;
         state.test_move = None;
         state.paces = PanTilt::default();

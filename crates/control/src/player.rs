@@ -73,9 +73,25 @@ impl<const SEGMENTS: usize> Player<SEGMENTS> {
         }
     }
 
-    /// Returns a player without a job, at rest somewhere, with the speed that was asked for.
-    pub(crate) fn resting_anew(&self, position_rad: PanTilt<f32>) -> Self {
-        Self { asked_rate: self.asked_rate, ..Self::resting_at(position_rad) }
+    /// Forgets its job and rests somewhere, with the speed that was asked for. In place: a queue is too large for the stack of a tick.
+    pub(crate) fn rest_at(&mut self, position_rad: PanTilt<f32>) {
+        for i in 0..self.length {
+            self.queue[(self.head + i) % SEGMENTS] = None;
+        }
+        let none = Player::<0>::resting_at(position_rad);
+        // every field: whoever adds one adds it here
+        let Self { queue: _, asked_rate: _, head, length, lit, finished, tick, fraction, rate, .. } = self;
+        (*head, *length, *lit, *finished) = (none.head, none.length, none.lit, none.finished);
+        (*tick, *fraction, *rate) = (none.tick, none.fraction, none.rate);
+        let Self { rate_slope, gate_rose, gate_fell, pausing, runs_on_ticks, rest, end, .. } = self;
+        (*rate_slope, *gate_rose, *gate_fell) = (none.rate_slope, none.gate_rose, none.gate_fell);
+        (*pausing, *runs_on_ticks, *rest, *end) = (none.pausing, none.runs_on_ticks, none.rest, none.end);
+    }
+
+    /// Likewise, as one that just begins.
+    pub(crate) fn begin_anew(&mut self, position_rad: PanTilt<f32>) {
+        self.rest_at(position_rad);
+        self.asked_rate = 1.0;
     }
 
     /// Segments that there is room for.
@@ -135,7 +151,8 @@ impl<const SEGMENTS: usize> Player<SEGMENTS> {
 
     /// Forgets what is queued; from now on the joints are to rest at zero.
     pub(crate) fn abandon(&mut self) {
-        *self = Self { finished: true, ..self.resting_anew(PanTilt::default()) };
+        self.rest_at(PanTilt::default());
+        self.finished = true;
     }
 
     /// Whether the plan's clock has left its start.

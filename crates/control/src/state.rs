@@ -44,9 +44,8 @@ pub struct Carried {
 
 impl<const SEGMENTS: usize> State<SEGMENTS> {
     /// Starts the tick count at another number than 0, as after a long uptime.
-    #[must_use]
-    pub const fn counting_from(self, tick: u32) -> Self {
-        Self { tick, ..self }
+    pub const fn count_from(&mut self, tick: u32) {
+        self.tick = tick;
     }
 
     /// Estimates of both joints.

@@ -212,7 +212,7 @@ impl SimulatedRig {
     #[must_use]
     pub fn counting_from(mut self, tick: u32) -> Self {
         if let Brain::Here(brain) = &mut self.brain {
-            brain.1 = brain.1.counting_from(tick);
+            brain.1.count_from(tick);
         }
         self
     }
