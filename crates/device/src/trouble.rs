@@ -99,7 +99,7 @@ impl fmt::Display for Trouble {
                 WrongConfiguration::Armed => f.write_str("the board is armed and takes no configuration: disarm it"),
             },
             Self::Reset => f.write_str(
-                "the board was reset, and does not know where the head stands: configure it and home the head again",
+                "the board was reset, and does not know any more where the head stands: home it again before it draws",
             ),
             Self::LostRows { from, to } => write!(
                 f,

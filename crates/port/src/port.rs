@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{FlockOperation, Mode, OFlags};
+use rustix::io::Errno;
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use tracelight_task::Failure;
 
@@ -65,7 +66,12 @@ impl Port {
     /// The line is gone.
     pub fn read(&mut self, out: &mut Vec<u8>, wait: Duration) -> io::Result<()> {
         let wait = Timespec::try_from(wait).map_err(io::Error::other)?;
-        let is_ready = poll(&mut [PollFd::new(&self.file, PollFlags::IN)], Some(&wait))? > 0;
+        let is_ready = match poll(&mut [PollFd::new(&self.file, PollFlags::IN)], Some(&wait)) {
+            Ok(ready) => ready > 0,
+            // a signal, such as of a window that changes its size, is no broken line
+            Err(Errno::INTR) => return Ok(()),
+            Err(e) => return Err(e.into()),
+        };
         let mut bytes = [0; 4096];
         match self.file.read(&mut bytes) {
             // a terminal whose other end was closed says so by no bytes, though it is ready
@@ -74,7 +80,7 @@ impl Port {
                 out.extend_from_slice(&bytes[..count]);
                 Ok(())
             }
-            Err(e) if e.kind() == io::ErrorKind::WouldBlock => Ok(()),
+            Err(e) if matches!(e.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) => Ok(()),
             Err(e) => Err(e),
         }
     }
@@ -91,10 +97,13 @@ impl Port {
                 Ok(count) => left = &left[count..],
                 Err(e) if e.kind() == io::ErrorKind::WouldBlock => {
                     let mut ready = [PollFd::new(&self.file, PollFlags::OUT)];
-                    if poll(&mut ready, Some(&LONGEST))? == 0 {
-                        return Err(io::ErrorKind::TimedOut.into());
+                    match poll(&mut ready, Some(&LONGEST)) {
+                        Ok(0) => return Err(io::ErrorKind::TimedOut.into()),
+                        Ok(_) | Err(Errno::INTR) => {}
+                        Err(e) => return Err(e.into()),
                     }
                 }
+                Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
                 Err(e) => return Err(e),
             }
         }
