@@ -103,7 +103,7 @@ impl fmt::Display for Trouble {
             ),
             Self::LostRows { from, to } => write!(
                 f,
-                "the board's ticks {from} to {to} are lost, and it cannot tell them again: configure it and home the head again"
+                "the board's ticks {from} to {to} are lost, and it cannot tell them again: home the head again before it draws"
             ),
             Self::Diverged(Divergence { tick, what, host, board }) => write!(
                 f,

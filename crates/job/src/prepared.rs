@@ -146,10 +146,10 @@ impl Prepared {
         self.seen.as_ref().map(|seen| &seen.image)
     }
 
-    /// What to look at before any light, on a day such as 2026-11-23.
+    /// What to look at before any light, on a day such as 2026-11-23; a head that is given may know where it points, or not.
     #[must_use]
-    pub fn preflight(&self, today: &str) -> Vec<Check> {
-        let before = Before { homed: !self.how.powered_up, today };
+    pub fn preflight(&self, homed: Option<bool>, today: &str) -> Vec<Check> {
+        let before = Before { homed: homed.unwrap_or(!self.how.powered_up), today };
         preflight(&self.placed, &self.driving, &self.schedule.plan, before)
     }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use tracelight_device::{Host, Stage};
+use tracelight_device::{Host, Stage, Twin};
 use tracelight_rig::wire::Greeting;
 use tracelight_rig::{Command, Rig, TICK_F64_S, Telemetry};
 use tracelight_sim::RigConfig;
@@ -48,7 +48,8 @@ impl Device {
         let host = Host::new(config.control_config(), new_session());
         let (began, stop) = (Instant::now(), stop.clone());
         let mut device = Self { host, port, path: path.to_owned(), began, broke: None, stop };
-        while device.host.stage() != Stage::Running {
+        // until it is known how it begins
+        while device.host.twin().is_none_or(|twin| twin.state().is_none()) {
             device.stop.check()?;
             device.pump();
             device.host.board().map_or(Ok(()), &mut meet)?;
@@ -77,6 +78,12 @@ impl Device {
             }
         }
         Err(self.failure().unwrap_or_else(Failure::interrupted))
+    }
+
+    /// Whether the head knows where it points, by the last tick that is known.
+    #[must_use]
+    pub fn is_homed(&self) -> bool {
+        self.host.twin().and_then(Twin::state).is_some_and(|state| state.is_homed())
     }
 
     /// Whether a person must arm it.

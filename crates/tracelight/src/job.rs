@@ -126,7 +126,8 @@ fn ran(
     let arms = device.as_ref().is_some_and(|device| device.rig().wants_a_person());
     let how = args.by_hand.attending(args.is_by_steps(), device.is_some());
     let mut at_wall = AtWall::of(Attending { arms, ..how }, task, task.stop);
-    at_wall.iter().for_each(|hands| hands.preflight(&prepared.preflight(&named::today())));
+    let homed = device.as_ref().map(|device| device.rig().is_homed());
+    at_wall.iter().for_each(|hands| hands.preflight(&prepared.preflight(homed, &named::today())));
     let (head, mut nobody) = (device.as_mut().map_or(Head::Simulated, |device| Head::Given(device)), Nobody);
     let hands: &mut dyn Hands = at_wall.as_mut().map_or(&mut nobody, |hands| hands);
     let (prepared, mut ran) = if args.is_by_steps() {

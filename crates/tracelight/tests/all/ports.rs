@@ -115,8 +115,12 @@ fn a_picture_is_drawn_by_the_head_at_a_port_and_again_by_the_next_program() {
 #[test]
 fn a_head_that_does_not_know_where_it_points_is_jogged_and_homed_for_the_programs_that_follow() {
     let served = Served::new("port-home", &["--sim-unhomed", "--seed", "3"]);
-    let refused = served.trace("unhomed", &[]).output().unwrap();
+    let refused = served.trace("unhomed", &["--events"]).output().unwrap();
     assert!(!refused.status.success() && text(&refused).contains("tracelight home"), "{}", text(&refused));
+    let told = String::from_utf8_lossy(&refused.stdout);
+    let list: Value = serde_json::from_str(told.lines().next().unwrap()).unwrap();
+    let homed = list["checks"].as_array().unwrap().iter().find(|check| check["name"] == "homed").unwrap();
+    assert_eq!(homed["verdict"], "refused", "{list}");
     for (args, why) in [
         (["jog", "10cm,0cm"], "nobody knows where on the target it points"),
         (["jog", "31deg,0deg"], "at most 30"),
