@@ -36,8 +36,14 @@ pub fn check_homed(now: &Telemetry) -> Result<(), Failure> {
     if now.homed || now.fault().is_some_and(Fault::loses_counts) {
         return Ok(());
     }
+    Err(unhomed())
+}
+
+/// What becomes of a job whose rig does not know where its joints are.
+#[must_use]
+pub fn unhomed() -> Failure {
     let message = "the head was powered up and not homed since: nobody knows where its light would fall, and nothing was drawn; home it first: tracelight home, for a head at a port that points straight ahead, or tracelight calibrate head --home --camera …";
-    Err(Failure::failed("unhomed", message))
+    Failure::failed("unhomed", message)
 }
 
 /// What becomes of a job whose rig was homed, and is not any more.

@@ -14,8 +14,10 @@ use crate::course::{Wall, gone};
 /// Fastest and most sudden that a joint is jogged.
 const GENTLE_RAD_S: f64 = 1.0;
 const GENTLE_RAD_S2: f64 = 4.0;
-/// How long a head may take to come to rest, and to park, ticks.
-const REST_TICKS: u32 = 2000;
+/// For how long a head rests that has come to rest, and how long that and parking may take, ticks. One whose motors have just taken hold of it is not known to move
+/// yet.
+const SETTLED_TICKS: u32 = 300;
+const REST_TICKS: u32 = 5000;
 const PARK_TICKS: u32 = 30_000;
 /// How long a rig may take to say that it is homed, ticks.
 const HOME_TICKS: u32 = 500;
@@ -33,6 +35,27 @@ pub struct Place {
     pub spot: Option<Point>,
     /// Whether it knows where it points.
     pub homed: bool,
+}
+
+impl Place {
+    /// For people.
+    #[must_use]
+    pub fn words(&self) -> String {
+        // nobody reads a sign of nothing
+        let rounded = |value: f64, digit: f64| (value / digit).round() * digit + 0.0;
+        let PanTilt { pan, tilt } = self.angle_rad.map(|angle| rounded(angle.to_degrees(), 0.01));
+        let angles = format!("pan {pan:.2}°, tilt {tilt:.2}°");
+        match (self.homed, self.spot) {
+            (false, _) => format!("the head is not homed; it is at {angles} from where it was powered up"),
+            (true, Some(spot)) => {
+                let [x, y] = [spot.x, spot.y].map(|m| rounded(1e3 * m, 0.1));
+                format!(
+                    "the head is at {angles}: by what it tells its beam meets the target at {x:.1}, {y:.1} mm"
+                )
+            }
+            (true, None) => format!("the head is at {angles}: by what it tells its beam misses the target"),
+        }
+    }
 }
 
 /// Where a head is to be jogged.
@@ -93,8 +116,9 @@ impl<'a> Mover<'a> {
     /// Takes the place where it rests to be at these angles, rad.
     ///
     /// # Errors
-    /// As of [`new`](Self::new); `session`: its joints cannot be there, or move.
+    /// As of [`new`](Self::new); `unreachable`: its joints cannot be there; `session`: they move.
     pub fn home(&mut self, at_rad: PanTilt<f64>) -> Result<Place, Failure> {
+        self.check_range(at_rad, "would be")?;
         let count_rad = self.driving.rig.model.encoder.count_rad();
         self.ask(Request::Home(at_rad.map(|angle| (angle / count_rad).round() as i32)))?;
         let off_rad = |wall: &Wall<'_>| {
@@ -102,6 +126,8 @@ impl<'a> Mover<'a> {
             Joint::BOTH.into_iter().map(|j| (f64::from(at[j]) - at_rad[j]).abs()).fold(0.0, f64::max)
         };
         self.wait(HOME_TICKS, |wall| wall.told().homed && off_rad(wall) < 0.5 * count_rad + 1e-3)?;
+        // a board keeps the zero of a head that rests
+        self.settle()?;
         Ok(self.place())
     }
 
@@ -129,13 +155,19 @@ impl<'a> Mover<'a> {
     /// Which angles a jog asks for, rad.
     fn target_rad(&self, jog: Jog) -> Result<PanTilt<f64>, Failure> {
         let Place { angle_rad, spot, homed } = self.place();
+        if homed {
+            self.check_range(angle_rad, "is").map_err(|out| {
+                let message = format!("{}: `tracelight park` takes it back to straight ahead", out.message);
+                Failure::failed(out.code, message)
+            })?;
+        }
         let on_target = |at: Point| {
             self.driving.machine.angles(at).map_err(|e| Failure::failed("unreachable", e.to_string()))
         };
         match jog {
             Jog::Angles(by_rad) if homed => {
                 let to_rad = PanTilt::from_fn(|j| angle_rad[j] + by_rad[j]);
-                self.check_range(to_rad)?;
+                self.check_range(to_rad, "would be")?;
                 Ok(to_rad)
             }
             Jog::Angles(by_rad) => {
@@ -167,14 +199,14 @@ impl<'a> Mover<'a> {
     }
 
     /// Refuses angles out of the joints' ranges.
-    fn check_range(&self, to_rad: PanTilt<f64>) -> Result<(), Failure> {
+    fn check_range(&self, to_rad: PanTilt<f64>, is: &str) -> Result<(), Failure> {
         let range_rad = self.driving.machine.geometry.range_rad;
         let beyond = |j: &Joint| !(range_rad[*j].0..=range_rad[*j].1).contains(&to_rad[*j]);
         match Joint::BOTH.into_iter().find(beyond) {
             Some(j) => {
                 let (lower, upper) = range_rad[j];
                 let message = format!(
-                    "{j} would be at {:.1} degrees, out of its range of {:.1} to {:.1}",
+                    "{j} {is} at {:.1} degrees, out of its range of {:.1} to {:.1}",
                     to_rad[j].to_degrees(),
                     lower.to_degrees(),
                     upper.to_degrees()
@@ -249,15 +281,17 @@ impl<'a> Mover<'a> {
         }
     }
 
-    /// Waits until the joints rest; after a while it goes on as they are.
+    /// Waits until the joints have rested for a while.
     fn settle(&mut self) -> Result<(), Failure> {
+        let mut rested = 0;
         for _ in 0..REST_TICKS {
             self.step()?;
-            if self.wall.rests() {
-                break;
+            rested = if self.wall.rests() { rested + 1 } else { 0 };
+            if rested >= SETTLED_TICKS {
+                return Ok(());
             }
         }
-        Ok(())
+        Err(Failure::failed("unfinished", "the head does not come to rest: does something move it?"))
     }
 
     fn wait(&mut self, ticks: u32, is_over: impl Fn(&Wall<'_>) -> bool) -> Result<(), Failure> {

@@ -146,10 +146,10 @@ impl Prepared {
         self.seen.as_ref().map(|seen| &seen.image)
     }
 
-    /// What to look at before any light, on a day such as 2026-11-23; a head that is given may know where it points, or not.
+    /// What to look at before any light, on a day such as 2026-11-23.
     #[must_use]
-    pub fn preflight(&self, homed: Option<bool>, today: &str) -> Vec<Check> {
-        let before = Before { homed: homed.unwrap_or(!self.how.powered_up), today };
+    pub fn preflight(&self, today: &str) -> Vec<Check> {
+        let before = Before { homed: !self.how.powered_up, today };
         preflight(&self.placed, &self.driving, &self.schedule.plan, before)
     }
 
@@ -414,11 +414,13 @@ impl Prepared {
 
 /// What to say of figures of a spot that nobody saw.
 fn known_by(origin: Origin, driving: &Driving) -> Option<String> {
-    (origin.light_from == LightFrom::Encoders).then(|| {
+    (origin.light_from != LightFrom::Simulation).then(|| {
         format!(
-            "where the spot was is what the encoders say, on a target {:.3} m from a head that is built as the rig {} is said to be: nobody saw the light, and what its \
-             beam, its bearings and its stand are off is in none of these figures",
-            driving.pose.distance_m, driving.rig.name
+            "nobody saw the light. Where the spot was is what {} say, on a target {:.3} m from a head that is built as the rig {} says; a beam, bearings or a stand that \
+             are off are in none of these figures",
+            if origin.light_from == LightFrom::Commands { "the commands" } else { "the encoders" },
+            driving.pose.distance_m,
+            driving.rig.name
         )
     })
 }

@@ -1,15 +1,19 @@
 //! A question that a key answers.
 
 use std::io::IsTerminal as _;
+use std::time::{Duration, Instant};
 
 use tracelight_task::{Failure, Task};
 
 use crate::keys::{Key, Keys};
 
+/// For how long an answer is waited for.
+const PATIENCE: Duration = Duration::from_secs(60);
+
 /// Asks whoever is at the terminal for light: the key A allows it. `hold` waits, with the head in its hands, until the key that is looked for has come.
 ///
 /// # Errors
-/// `usage`: standard input is no terminal; `not-armed`: another key was pressed; what `hold` fails by.
+/// `usage`: standard input is no terminal; `not-armed`: another key was pressed, or none for a minute; what `hold` fails by.
 pub fn asked(
     question: &str,
     task: Task<'_>,
@@ -21,7 +25,11 @@ pub fn asked(
         return Err(Failure::usage("usage", message));
     };
     task.say(question);
-    let is_allowed = hold(&mut || keys.next().map(|key| key == Key::Char('a')))?;
+    let until = Instant::now() + PATIENCE;
+    let is_allowed = hold(&mut || match keys.next() {
+        Some(key) => Some(key == Key::Char('a')),
+        None => (Instant::now() > until).then_some(false),
+    })?;
     if is_allowed {
         return Ok(());
     }

@@ -237,6 +237,9 @@ impl Hands for AtWall<'_> {
             Event::State { .. } | Event::Fault(_) if self.look.is_some() || self.stop.is_wanted() => None,
             Event::State { to: State::Armed, .. } if !self.armed => None,
             Event::State { to: State::Pausing, .. } if self.at_once => None,
+            Event::State { from: State::Armed, to: State::Ready | State::Unhomed, .. } => {
+                Some("no longer armed: A arms".to_owned())
+            }
             Event::State { to, .. } => words(to).map(str::to_owned),
             Event::Stroke { stroke, of, .. } => {
                 (self.how.steps && !self.points).then(|| format!("stroke {} of {of}", stroke + 1))

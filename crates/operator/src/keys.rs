@@ -110,11 +110,13 @@ struct Raw {
 #[cfg(unix)]
 impl Raw {
     fn enter() -> Option<Self> {
-        use rustix::termios::{LocalModes, OptionalActions, tcgetattr, tcsetattr};
+        use rustix::termios::{LocalModes, OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr};
         let before = tcgetattr(std::io::stdin()).ok()?;
         let mut raw = before.clone();
         raw.local_modes.remove(LocalModes::ICANON | LocalModes::ECHO | LocalModes::ISIG);
         tcsetattr(std::io::stdin(), OptionalActions::Now, &raw).ok()?;
+        // what was typed before anything was asked is no answer
+        tcflush(std::io::stdin(), QueueSelector::IFlush).ok()?;
         Some(Self { before })
     }
 }

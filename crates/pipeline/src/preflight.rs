@@ -96,7 +96,8 @@ fn homed(is_homed: bool) -> Check {
     match is_homed {
         true => Check::new("homed", Verdict::Passed, "it knows where it points".to_owned()),
         false => {
-            let words = "it does not know where it points: home it (--home with a camera)";
+            let words =
+                "it does not know where it points: home it (tracelight home at a port, --home with a camera)";
             Check::new("homed", Verdict::Refused, words.to_owned())
         }
     }

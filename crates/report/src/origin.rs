@@ -6,6 +6,7 @@ use tracelight_sim::{LightFrom, Origin};
 pub(crate) const fn told_by(origin: Origin) -> &'static str {
     match origin.light_from {
         LightFrom::Simulation => "",
+        LightFrom::Commands => ", as commanded",
         LightFrom::Encoders => ", by the encoders",
     }
 }
@@ -16,6 +17,14 @@ pub(crate) const fn badge(origin: Origin) -> (&'static str, &'static str) {
         (true, LightFrom::Simulation) => {
             ("simulated", "The rig was one of equations: nothing moved, no light fell")
         }
+        (true, LightFrom::Commands) => (
+            "simulated, as commanded",
+            "A board emulated the head: nothing moved, no light fell, and where it would have fallen is what it was told",
+        ),
+        (false, LightFrom::Commands) => (
+            "as commanded",
+            "Nobody saw the light, and nobody measured the head: where it fell is what it was told",
+        ),
         (true, LightFrom::Encoders) => (
             "simulated, by its encoders",
             "A board emulated the head: nothing moved, no light fell, and where it would have fallen is what its encoders say",

@@ -52,7 +52,8 @@ pub struct Summary {
     pub notes: Vec<String>,
     /// Nothing of this was measured on a head: the rig was one of equations.
     pub simulated: bool,
-    /// Who tells where the spot was, and so what the errors are of: `simulation`, or `encoders` where nobody saw the light.
+    /// Who tells where the spot was, and so what the errors are of: `simulation`; `encoders` where nobody saw the light, `commands` where nobody
+    /// measured the head either.
     pub light_from: &'static str,
     /// Wall-clock time of the stages, ms.
     pub timing_ms: TimingFigures,

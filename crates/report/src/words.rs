@@ -34,11 +34,7 @@ impl Summary {
                 self.tracking.max_mm,
                 self.tracking.overshoot_percent,
                 self.tracking.final_error_mm.map_or_else(String::new, |mm| format!(", {mm:.3} mm at rest")),
-                if self.light_from == LightFrom::Encoders.name() {
-                    "; by the encoders, nobody saw the light"
-                } else {
-                    ""
-                },
+                who_saw(self.light_from),
             ),
             false => "\nerror:  none to measure, nothing was lit".to_owned(),
         };
@@ -62,5 +58,14 @@ impl Summary {
             }
         }
         text
+    }
+}
+
+/// What is known of errors, by who tells them.
+fn who_saw(light_from: &str) -> &'static str {
+    match light_from {
+        _ if light_from == LightFrom::Encoders.name() => "; by the encoders, nobody saw the light",
+        _ if light_from == LightFrom::Commands.name() => "; as commanded, nobody measured it",
+        _ => "",
     }
 }

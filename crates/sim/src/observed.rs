@@ -13,6 +13,8 @@ pub enum LightFrom {
     /// The equations of a simulated head, which know.
     #[default]
     Simulation,
+    /// What a head without encoders was told, which nobody measured, and the gate. Nobody saw the light.
+    Commands,
     /// Encoders, by how the head is said to be built and to stand, and the gate. Nobody saw the light.
     Encoders,
 }
@@ -23,6 +25,7 @@ impl LightFrom {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Simulation => "simulation",
+            Self::Commands => "commands",
             Self::Encoders => "encoders",
         }
     }
@@ -90,7 +93,7 @@ pub struct ByEncoders<R> {
     geometry: HeadGeometry,
     pose: HeadPose,
     laser: Laser,
-    simulated: bool,
+    origin: Origin,
     patience_ticks: usize,
     /// Number of the first tick that was told: of a board that has been up for long it is a large one.
     first_tick: Option<u32>,
@@ -127,7 +130,10 @@ impl<R: Rig> ByEncoders<R> {
         let (on_ticks, off_ticks) = (control.laser_on_ticks, control.laser_off_ticks);
         let laser = Laser { on_ticks, off_ticks, gate: false, since: u32::MAX };
         let patience_ticks = patience_ticks(config);
-        Self { rig, geometry, pose, laser, simulated, patience_ticks, first_tick: None }
+        let open_loop = config.drive.kind.is_open_loop();
+        let light_from = if open_loop { LightFrom::Commands } else { LightFrom::Encoders };
+        let origin = Origin { simulated, light_from };
+        Self { rig, geometry, pose, laser, origin, patience_ticks, first_tick: None }
     }
 
     /// The rig itself.
@@ -174,7 +180,7 @@ impl<R: Rig> Observed for ByEncoders<R> {
     }
 
     fn origin(&self) -> Origin {
-        Origin { simulated: self.simulated, light_from: LightFrom::Encoders }
+        self.origin
     }
 
     fn patience_ticks(&self) -> usize {

@@ -4,6 +4,7 @@ use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
 use tracelight_camera::{Opened, shown};
+use tracelight_eye::power::unhomed;
 use tracelight_eye::trouble::emulate;
 use tracelight_files::ResultFolder;
 use tracelight_job::{
@@ -105,6 +106,10 @@ fn connected(
     task: Task<'_>,
 ) -> Result<ByEncoders<Device>, Failure> {
     let mut device = head(at, &prepared.driving.rig, prepared.driving.pose, task.stop)?;
+    // before anything is written of a run that cannot begin
+    if !device.rig().is_homed() {
+        return Err(unhomed());
+    }
     if device.rig().wants_a_person() && !args.dry_run && !std::io::stdin().is_terminal() {
         let message = "a real head is lit only after a person has armed it by a key, and standard input is no terminal: start it in one, or with --dry-run";
         return Err(Failure::usage("usage", message));
@@ -123,11 +128,10 @@ fn ran(
     kept: &mut Records<'_>,
     task: Task<'_>,
 ) -> Result<(Prepared, Ran), Failure> {
-    let arms = device.as_ref().is_some_and(|device| device.rig().wants_a_person());
+    let arms = device.as_ref().is_some_and(|device| device.rig().wants_a_person()) && !args.dry_run;
     let how = args.by_hand.attending(args.is_by_steps(), device.is_some());
     let mut at_wall = AtWall::of(Attending { arms, ..how }, task, task.stop);
-    let homed = device.as_ref().map(|device| device.rig().is_homed());
-    at_wall.iter().for_each(|hands| hands.preflight(&prepared.preflight(homed, &named::today())));
+    at_wall.iter().for_each(|hands| hands.preflight(&prepared.preflight(&named::today())));
     let (head, mut nobody) = (device.as_mut().map_or(Head::Simulated, |device| Head::Given(device)), Nobody);
     let hands: &mut dyn Hands = at_wall.as_mut().map_or(&mut nobody, |hands| hands);
     let (prepared, mut ran) = if args.is_by_steps() {
@@ -137,7 +141,10 @@ fn ran(
         (prepared, ran)
     };
     // it knows why it is gone
-    ran.failure = device.and_then(|device| device.rig().failure()).or(ran.failure);
+    if let Some(why) = device.and_then(|device| device.rig().failure()) {
+        ran.notes.push(why.message.clone());
+        ran.failure = Some(why);
+    }
     Ok((prepared, ran))
 }
 

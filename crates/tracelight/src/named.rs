@@ -1,5 +1,7 @@
 //! What is in the files that the user named.
 
+use std::path::PathBuf;
+
 use tracelight_files as files;
 use tracelight_formats::ReadOptions;
 use tracelight_picture::{Pixels, Raster, Source, decode, decode_with};
@@ -84,7 +86,16 @@ pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
 
 /// Likewise, or a port with the head that is there: `PORT` or `PORT:RIG`.
 pub(crate) fn rig_or_port(name: &str) -> Result<(RigConfig, Option<At>), Failure> {
-    let Some((port, head)) = rigfile::at_port(name, is_device) else { return Ok((rig(name)?, None)) };
+    let Some((port, head)) = rigfile::at_port(name, is_device) else {
+        let no_port = |failure: Failure| match failure.message.contains("no rig file") {
+            true => Failure {
+                message: format!("{}, and there is no such port of a board", failure.message),
+                ..failure
+            },
+            false => failure,
+        };
+        return Ok((rig(name).map_err(no_port)?, None));
+    };
     let at = At { port: port.into(), is_said: head.is_some() };
     match rig(head.unwrap_or("report"))? {
         RigConfig { emulated: Some(_), .. } => {
@@ -95,6 +106,11 @@ pub(crate) fn rig_or_port(name: &str) -> Result<(RigConfig, Option<At>), Failure
         }
         rig => Ok((rig, Some(at))),
     }
+}
+
+/// The port that a name means, which may say whose head is there.
+pub(crate) fn port(name: &str) -> PathBuf {
+    rigfile::at_port(name, is_device).map_or(name, |(port, _)| port).into()
 }
 
 /// Whether there is a device of that name to talk to, also by a link.

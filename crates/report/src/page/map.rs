@@ -45,6 +45,7 @@ pub(super) fn map(job: &Finished<'_>) -> Result<String, EncodeError> {
 const fn heading(job: &Finished<'_>) -> &'static str {
     match job.origin.light_from {
         LightFrom::Simulation => "Where the light fell",
+        LightFrom::Commands => "Where the spot was commanded to be while lit",
         LightFrom::Encoders => "Where the encoders had the spot while lit",
     }
 }

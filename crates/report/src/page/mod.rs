@@ -67,6 +67,9 @@ pub fn page(job: &Finished<'_>, figures: &Summary, painting: &Raster) -> Result<
 const fn spot(job: &Finished<'_>) -> &'static str {
     match job.origin.light_from {
         LightFrom::Simulation => "true spot",
+        LightFrom::Commands => {
+            "where the head was told to have the spot, on a target at the distance that was given,"
+        }
         LightFrom::Encoders => {
             "where the encoders say that the spot is, on a target at the distance that was given,"
         }

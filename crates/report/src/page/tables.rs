@@ -34,7 +34,7 @@ pub(super) fn tiles(job: &Finished<'_>, figures: &Summary) -> String {
 const fn lit_word(job: &Finished<'_>) -> &'static str {
     match job.origin.light_from {
         LightFrom::Simulation => "light left the head for",
-        LightFrom::Encoders => "the laser's gate was open for",
+        LightFrom::Commands | LightFrom::Encoders => "the laser's gate was open for",
     }
 }
 

@@ -1,5 +1,3 @@
-use std::path::PathBuf;
-
 use clap::Args;
 use serde_json::{Value, json};
 use tracelight_camera::{camera_json, camera_text, look_at_all, no_camera_text};
@@ -10,6 +8,7 @@ use tracelight_task::{Failure, Stop, Task};
 use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::eyes::ImageSize;
+use crate::named;
 
 /// List connected boards and cameras: what a board is and how good its line; modes, frame rate and latency of a camera
 #[derive(Args, Debug)]
@@ -27,14 +26,14 @@ pub(crate) struct DoctorArgs {
     camera_size: Option<ImageSize>,
     /// Look at the board at this port only, which is disarmed: what it is, and how good the line is
     #[arg(long, value_name = "PORT", conflicts_with = "camera")]
-    rig: Option<PathBuf>,
+    rig: Option<String>,
     #[command(flatten)]
     pub(crate) voice: Voice,
 }
 
 pub(crate) fn run(args: &DoctorArgs, stop: &Stop) -> Result<Answer, Failure> {
     if let Some(port) = &args.rig {
-        let seen = examine(port, stop)?;
+        let seen = examine(&named::port(port), stop)?;
         return Ok(Answer::new(examined_text(&seen), examined_json(&seen).to_string()));
     }
     let bar = Bar::new(args.voice.quiet);

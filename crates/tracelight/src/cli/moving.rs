@@ -74,7 +74,7 @@ pub(crate) struct JogArgs {
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     to: Option<Offset>,
     /// Then let out a dot of light for this long, such as 2s, to see where a head is that is not homed; at a real head a key allows it
-    #[arg(long, value_name = "TIME", value_parser = dot)]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = dot)]
     dot: Option<f64>,
     #[command(flatten)]
     pub(crate) head: HeadArgs,
@@ -151,7 +151,7 @@ pub(crate) fn jog(args: &JogArgs, stop: &Stop) -> Result<Answer, Failure> {
         let Some(lasts_s) = args.dot else { return Ok((place, None)) };
         if arms {
             asked(
-                &format!("{}; A lets a dot out there for {lasts_s} s, any other key none", words(&place)),
+                &format!("{}; A lets a dot out there for {lasts_s} s, any other key none", place.words()),
                 task,
                 |wait| mover.hold(wait),
             )?;
@@ -183,7 +183,7 @@ impl HeadArgs {
             "homed": place.homed, "pan_deg": place.angle_rad.pan.to_degrees(), "tilt_deg": place.angle_rad.tilt.to_degrees(),
             "spot_mm": spot_mm, "light_from": origin.light_from.name(), "simulated": origin.simulated, "gate_open_s": dot_s,
         });
-        Ok(Answer::new(words(&place) + &lit, json.to_string()))
+        Ok(Answer::new(place.words() + &lit, json.to_string()))
     }
 
     fn driving(&self) -> Result<(Driving, At), Failure> {
@@ -202,28 +202,6 @@ impl HeadArgs {
         let known = self.stands.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
         known.iter().for_each(|known| stand_by(&mut driving, known));
         Ok((driving, at))
-    }
-}
-
-/// To a tenth of a millimetre, without a sign of nothing, mm.
-fn tenths(m: f64) -> f64 {
-    (1e4 * m).round() / 10.0 + 0.0
-}
-
-/// Where a head rests, in words.
-fn words(place: &Place) -> String {
-    let PanTilt { pan, tilt } = place.angle_rad.map(f64::to_degrees);
-    // nobody reads a sign of nothing
-    let [pan, tilt] = [pan, tilt].map(|angle| (100.0 * angle).round() / 100.0 + 0.0);
-    let angles = format!("pan {pan:.2}°, tilt {tilt:.2}°");
-    match (place.homed, place.spot) {
-        (false, _) => format!("the head is not homed; it is at {angles} from where it was powered up"),
-        (true, Some(spot)) => format!(
-            "the head is at {angles}: by its encoders its beam meets the target at {:.1}, {:.1} mm",
-            tenths(spot.x),
-            tenths(spot.y)
-        ),
-        (true, None) => format!("the head is at {angles}: by its encoders its beam misses the target"),
     }
 }
 
