@@ -1,4 +1,4 @@
-use tracelight_rig::TICK_F64_S;
+use tracelight_rig::{Phase, TICK_F64_S};
 use tracelight_stroke::{Point, Vec2};
 use tracelight_trajectory::{LegEnd, Plan, PlanPoint};
 
@@ -146,13 +146,14 @@ fn overshoot_percent(plan: &Plan, run: &Run) -> f64 {
 }
 
 /// How far the spot goes past the end of a leg along its last direction, beyond where the plan itself goes that
-/// way afterwards, m.
+/// way afterwards, m. A head that holds, or makes its test move, is dark, and not on its way past anything.
 fn beyond(end: &LegEnd, run: &Run) -> f64 {
     let first = run.ticks.partition_point(|t| t.telemetry.plan_tick < end.start_tick);
     let last = run.ticks.partition_point(|t| t.telemetry.plan_tick <= end.tick) + AFTER_END_TICKS;
     let ahead = |p: Point| (p - end.point).dot(end.tangent).max(0.0);
     let window = &run.ticks[first..last.min(run.ticks.len())];
-    let over = window.iter().filter_map(|t| Some(ahead(t.spot?) - ahead(t.asked?)));
+    let moves = window.iter().filter(|t| !matches!(t.telemetry.phase, Phase::Holding | Phase::Testing));
+    let over = moves.filter_map(|t| Some(ahead(t.spot?) - ahead(t.asked?)));
     over.fold(0.0, f64::max)
 }
 
@@ -164,7 +165,7 @@ fn final_error_mm(plan: &Plan, run: &Run) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use tracelight_rig::PanTilt;
+    use tracelight_rig::{PanTilt, Telemetry};
 
     use super::*;
 
@@ -204,5 +205,29 @@ mod tests {
             let nearest = each.fold(f64::INFINITY, f64::min);
             assert_eq!(strokes.off_stroke(spot, tick).unwrap_or(f64::INFINITY), nearest, "{tick}");
         }
+    }
+
+    #[test]
+    fn a_test_move_in_the_dark_is_no_overshoot() {
+        let end = LegEnd {
+            tick: 10,
+            start_tick: 0,
+            point: Point::ORIGIN,
+            tangent: Vec2::new(1.0, 0.0),
+            length_m: 0.1,
+        };
+        let tick = |plan_tick: u32, x: f64, phase: Phase| Tick {
+            telemetry: Telemetry { plan_tick, phase, ..Telemetry::default() },
+            angle_rad: PanTilt::default(),
+            rate_rad_s: PanTilt::default(),
+            spot: Some(Point::new(x, 0.0)),
+            asked: Some(Point::new(-0.001, 0.0)),
+            light: false,
+        };
+        let mut run = Run { ticks: vec![tick(3, 0.0, Phase::Tracing), tick(3, 0.002, Phase::Testing)] };
+        run.ticks.push(tick(3, 0.001, Phase::Holding));
+        assert_eq!(beyond(&end, &run), 0.0);
+        run.ticks.push(tick(4, 0.0005, Phase::Tracing));
+        assert_eq!(beyond(&end, &run), 0.0005);
     }
 }

@@ -1,5 +1,6 @@
 //! A head at a port that is moved by hand: homed where it rests, jogged, parked.
 
+use std::f64::consts::TAU;
 use std::str::FromStr;
 
 use clap::Args;
@@ -88,6 +89,9 @@ pub(crate) struct ParkArgs {
     pub(crate) head: HeadArgs,
 }
 
+/// Furthest way on a target, m.
+const MOST_M: f64 = 1000.0;
+
 /// Two angles: pan to the left, tilt down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Angles(PanTilt<f64>);
@@ -98,7 +102,11 @@ impl FromStr for Angles {
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || format!("{text} is not two angles; give pan and tilt such as 5deg,-2deg");
         let (pan, tilt) = text.split_once(',').ok_or_else(wrong)?;
-        let angle = |text: &str| text.trim().parse::<Angle>().map_err(|e| e.to_string());
+        let angle = |text: &str| {
+            let angle: Angle = text.trim().parse().map_err(|e| format!("{e}"))?;
+            let is_one = angle.0.abs() <= TAU;
+            is_one.then_some(angle).ok_or_else(|| format!("{text} is more than a turn of 360 degrees"))
+        };
         Ok(Self(PanTilt::new(angle(pan)?.0, angle(tilt)?.0)))
     }
 }
@@ -113,11 +121,17 @@ impl FromStr for Way {
     fn from_str(text: &str) -> Result<Self, String> {
         let angles = text.parse::<Angles>().map(|Angles(by)| Self(Jog::Angles(by)));
         let lengths = || text.parse::<Offset>().map(|Offset(x, y)| Self(Jog::By(Vec2::new(x.0, y.0))));
-        angles.or_else(|_| lengths()).map_err(|_| {
-            format!(
+        match (angles, lengths()) {
+            (Ok(way), _) => Ok(way),
+            (Err(_), Ok(Self(Jog::By(by)))) if by.hypot() > MOST_M => {
+                Err(format!("{text} is further than {MOST_M} m, and off every wall"))
+            }
+            (Err(_), Ok(way)) => Ok(way),
+            (Err(why), Err(_)) if why.contains("a turn of") => Err(why),
+            (Err(_), Err(_)) => Err(format!(
                 "{text} is no way to go; give two angles such as 5deg,-2deg, or two lengths such as 10cm,5cm"
-            )
-        })
+            )),
+        }
     }
 }
 
@@ -218,6 +232,8 @@ mod tests {
         for text in ["10cm", "10cm,5deg", "5,5", "", "1cm,2cm,3cm", "nan,nan"] {
             assert!(way(text).unwrap_err().contains("two angles such as"), "{text}");
         }
+        assert!(way("400deg,0deg").unwrap_err().contains("more than a turn"));
+        assert!(way("1e300m,0cm").unwrap_err().contains("off every wall"));
         assert!(dot("0s").is_err() && dot("61s").is_err() && dot("2s") == Ok(2.0));
     }
 }

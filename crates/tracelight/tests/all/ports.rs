@@ -118,7 +118,7 @@ fn a_head_that_does_not_know_where_it_points_is_jogged_and_homed_for_the_program
     let refused = served.trace("unhomed", &[]).output().unwrap();
     assert!(!refused.status.success() && text(&refused).contains("tracelight home"), "{}", text(&refused));
     assert!(!served.out("unhomed").exists(), "nothing is written of a run that cannot begin");
-    let nowhere = served.ask(&["home", "--at", "400deg,0deg"]);
+    let nowhere = served.ask(&["home", "--at", "300deg,0deg"]);
     assert!(text(&nowhere).contains("out of its range of"), "{}", text(&nowhere));
     for (args, why) in [
         (["jog", "10cm,0cm"], "nobody knows where on the target it points"),
