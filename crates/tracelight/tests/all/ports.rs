@@ -91,8 +91,8 @@ fn a_picture_is_drawn_by_the_head_at_a_port_and_again_by_the_next_program() {
         assert!(ran.status.success(), "{out}: {}", text(&ran));
         let told = text(&ran);
         assert!(told.contains("by the encoders, nobody saw the light"), "{told}");
-        // light may have been anywhere before, so the second one waits
-        assert_eq!(told.contains("it stays dark for"), out == "second", "{told}");
+        // light may have been anywhere before, so the second one waits, unless it comes late by itself
+        assert!(out == "second" || !told.contains("it stays dark for"), "{told}");
         let figures = served.summary(out);
         assert_eq!(
             (&figures["simulated"], &figures["light_from"], &figures["run"]["finished"]),
