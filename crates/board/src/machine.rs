@@ -123,8 +123,8 @@ impl<const SEGMENTS: usize> Machine<SEGMENTS> {
         spoilt.is_some()
     }
 
-    /// One tick: begins anew with a configuration if there is one, takes what came, `next` order by order, and lets the controller run. `next` is told what it may give: a segment only if there is room for one, and
-    /// one order a tick that lets light out. Without a configuration nothing moves and nothing is lit, and there is nothing to tell.
+    /// One tick: begins anew with a configuration if there is one, takes what came, `next` order by order, and lets the controller run. `next` is told what it may
+    /// give: a segment only if there is room for one, and one order a tick that lets light out. Without a configuration nothing moves and nothing is lit, and there is nothing to tell.
     pub fn tick(
         &mut self,
         sensed: &Sensed,

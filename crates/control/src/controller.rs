@@ -35,7 +35,7 @@ impl Controller {
     /// State of a head at rest whose encoders are known to count from zero: homed, dark, disarmed, held where it is.
     pub fn start_homed<const SEGMENTS: usize>(&self, sensed: &Sensed) -> State<SEGMENTS> {
         let mut state: State<SEGMENTS> = self.start(sensed);
-        state.supervisor.home();
+        self.trust(&mut state);
         state
     }
 
@@ -60,14 +60,26 @@ impl Controller {
 
     /// Makes a state that of a head as in [`start`](Self::start), in place: with its queue it is too large for the stack of a tick.
     pub fn restart<const SEGMENTS: usize>(&self, state: &mut State<SEGMENTS>, sensed: &Sensed) {
-        // every field: whoever adds one adds it here
-        let State { tick, fresh, sensed: last, servo, watch, player, supervisor, budget, .. } = state;
+        // every field, or it is not compiled
+        let State {
+            tick,
+            fresh,
+            sensed: last,
+            servo,
+            watch,
+            player,
+            supervisor,
+            budget,
+            way_back,
+            paces,
+            test_move,
+            home,
+        } = state;
         (*tick, *fresh, *last) = (0, true, *sensed);
         *servo = Servo::at_rest(&self.config, &sensed.encoders);
         *watch = Watch::new(&self.config, sensed, servo.estimates());
         player.begin_anew(servo.position_rad());
         (*supervisor, *budget) = (Supervisor::default(), LightBudget::new());
-        let State { way_back, paces, test_move, home, .. } = state;
         (*way_back, *paces, *test_move, *home) = (None, PanTilt::default(), None, PanTilt::default());
     }
 

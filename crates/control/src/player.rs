@@ -79,11 +79,27 @@ impl<const SEGMENTS: usize> Player<SEGMENTS> {
             self.queue[(self.head + i) % SEGMENTS] = None;
         }
         let none = Player::<0>::resting_at(position_rad);
-        // every field: whoever adds one adds it here
-        let Self { queue: _, asked_rate: _, head, length, lit, finished, tick, fraction, rate, .. } = self;
+        // every field, or it is not compiled
+        let Self {
+            queue: _,
+            asked_rate: _,
+            head,
+            length,
+            lit,
+            finished,
+            tick,
+            fraction,
+            rate,
+            rate_slope,
+            gate_rose,
+            gate_fell,
+            pausing,
+            runs_on_ticks,
+            rest,
+            end,
+        } = self;
         (*head, *length, *lit, *finished) = (none.head, none.length, none.lit, none.finished);
         (*tick, *fraction, *rate) = (none.tick, none.fraction, none.rate);
-        let Self { rate_slope, gate_rose, gate_fell, pausing, runs_on_ticks, rest, end, .. } = self;
         (*rate_slope, *gate_rose, *gate_fell) = (none.rate_slope, none.gate_rose, none.gate_fell);
         (*pausing, *runs_on_ticks, *rest, *end) = (none.pausing, none.runs_on_ticks, none.rest, none.end);
     }

@@ -21,13 +21,12 @@ impl RecentLight {
     /// As much as there may be, that many ticks ago.
     pub(crate) const fn full_before(ticks: u32) -> Self {
         let parts = ticks as usize / PART_TICKS as usize;
-        // the oldest light leaves with the last part
-        let last = PARTS - Self::FULL.part;
-        match parts {
-            _ if parts > PARTS + 1 => Self::NONE,
-            _ if parts > last => Self { part: Self::FULL.part + last, ..Self::FULL },
-            _ => Self { part: Self::FULL.part + parts, ..Self::FULL },
+        if parts > PARTS + 1 {
+            return Self::NONE;
         }
+        // in the part after the last one the oldest light leaves
+        let part = Self::FULL.part + parts;
+        Self { part: if part < PARTS { part } else { PARTS }, ..Self::FULL }
     }
 
     /// As much as there may be, just now.
