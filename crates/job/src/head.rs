@@ -1,6 +1,6 @@
 //! What a job is run by.
 
-use tracelight_sim::Observed;
+use tracelight_sim::{Observed, SimulatedRig};
 
 /// What a job is run by.
 pub enum Head<'a> {
@@ -15,13 +15,14 @@ impl Head<'_> {
         matches!(self, Self::Given(_))
     }
 
-    /// The one that is given, or that one.
+    /// The one that is given, or one that is put up.
     pub(crate) fn or<'b>(
         &'b mut self,
-        simulated: &'b mut (dyn Observed + 'b),
+        simulated: &'b mut Option<SimulatedRig>,
+        put_up: impl FnOnce() -> SimulatedRig,
     ) -> &'b mut (dyn Observed + 'b) {
         match self {
-            Self::Simulated => simulated,
+            Self::Simulated => simulated.insert(put_up()),
             Self::Given(rig) => &mut **rig,
         }
     }

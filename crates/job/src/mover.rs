@@ -7,7 +7,6 @@ use tracelight_session::{Job, Request, Session, State};
 use tracelight_sim::{Observed, Tick, observed_tick};
 use tracelight_stroke::{Point, Vec2};
 use tracelight_task::{Failure, Task};
-use tracelight_trajectory::turn;
 
 use crate::course::{Wall, gone};
 
@@ -141,11 +140,7 @@ impl<'a> Mover<'a> {
         if from == to {
             return Ok(self.place());
         }
-        let machine = &self.driving.machine;
-        let least = |limits: PanTilt<f64>, gentle: f64| limits.pan.min(limits.tilt).min(gentle);
-        let speed_rad_s = least(machine.speed_limit_rad_s, GENTLE_RAD_S);
-        let acceleration_rad_s2 = least(machine.acceleration_limit_rad_s2, GENTLE_RAD_S2);
-        let turn = turn(from, to, (speed_rad_s, acceleration_rad_s2));
+        let turn = self.driving.machine.turn(from, to, (GENTLE_RAD_S, GENTLE_RAD_S2));
         self.ask(Request::Jog(Job { segments: vec![turn], ..Job::default() }))?;
         self.wait(2 * u32::from(turn.ticks) + REST_TICKS, |wall| wall.state() != State::Jogging)?;
         self.settle()?;

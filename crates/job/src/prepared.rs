@@ -278,8 +278,8 @@ impl Prepared {
         task: Task<'_>,
     ) -> Result<(Self, Ran), Failure> {
         let dry = self.how.dry;
-        let mut put_up = self.put_up(&self.driving.rig);
-        let rig = head.or(&mut put_up);
+        let mut simulated = None;
+        let rig = head.or(&mut simulated, || self.put_up(&self.driving.rig));
         let origin = rig.origin();
         let Self { driving, schedule, placed, first, .. } = &mut self;
         task.stage("run", 1);
@@ -381,14 +381,13 @@ impl Prepared {
         let frame = self.placed.frame.as_ref().filter(|_| framed);
         let frame = frame_of(frame, &self.driving, dry)?;
         let drawn = (&self.schedule.plan, frame.as_ref());
-        if let Head::Given(rig) = head {
-            let done = run_lap(&mut **rig, drawn, dry, (keep, hands), task)?;
-            return Ok((done, rig.origin()));
-        }
-        let mut rig = self.put_up(believed);
-        let mut done = run_lap(&mut rig, drawn, dry, (keep, hands), task)?;
-        done.notes.extend(lost_note(believed, self.driving.pose.distance_m, rig.lost_steps()));
-        Ok((done, rig.origin()))
+        let mut simulated = None;
+        let rig = head.or(&mut simulated, || self.put_up(believed));
+        let origin = rig.origin();
+        let mut done = run_lap(rig, drawn, dry, (keep, hands), task)?;
+        let lost = simulated.map(|rig| rig.lost_steps());
+        done.notes.extend(lost.and_then(|lost| lost_note(believed, self.driving.pose.distance_m, lost)));
+        Ok((done, origin))
     }
 
     /// One lap that a camera follows, of a rig that is believed to be this.

@@ -1,6 +1,5 @@
 //! A question that a key answers.
 
-use std::io::IsTerminal as _;
 use std::time::{Duration, Instant};
 
 use tracelight_task::{Failure, Task};
@@ -9,6 +8,15 @@ use crate::keys::{Key, Keys};
 
 /// For how long an answer is waited for.
 const PATIENCE: Duration = Duration::from_secs(60);
+
+/// What is told where nobody is there to arm a real head, and what to do.
+#[must_use]
+pub fn nobody_arms(instead: &str) -> Failure {
+    let message = format!(
+        "a real head is lit only after a person has armed it by a key, and standard input is no terminal: {instead}"
+    );
+    Failure::usage("usage", message)
+}
 
 /// Asks whoever is at the terminal for light: the key A allows it. `hold` waits, with the head in its hands, until the key that is looked for has come.
 ///
@@ -19,11 +27,7 @@ pub fn asked(
     task: Task<'_>,
     hold: impl FnOnce(&mut dyn FnMut() -> Option<bool>) -> Result<bool, Failure>,
 ) -> Result<(), Failure> {
-    let keys = if std::io::stdin().is_terminal() { Keys::listen() } else { None };
-    let Some(keys) = keys else {
-        let message = "a real head is lit only after a person has armed it by a key, and standard input is no terminal: start it in one";
-        return Err(Failure::usage("usage", message));
-    };
+    let keys = Keys::listen().ok_or_else(|| nobody_arms("start it in one"))?;
     task.say(question);
     let until = Instant::now() + PATIENCE;
     let is_allowed = hold(&mut || match keys.next() {

@@ -7,6 +7,6 @@ mod asked;
 mod at_wall;
 mod keys;
 
-pub use asked::asked;
+pub use asked::{asked, nobody_arms};
 pub use at_wall::{AtWall, Attending};
 pub use keys::{Key, Keys};

@@ -2,16 +2,49 @@
 
 use tracelight_sim::{LightFrom, Origin};
 
-/// Added to the name of a figure of the spot.
-pub(crate) const fn told_by(origin: Origin) -> &'static str {
-    match origin.light_from {
-        LightFrom::Simulation => "",
-        LightFrom::Commands => ", as commanded",
-        LightFrom::Encoders => ", by the encoders",
+/// The words for figures of the spot, by who tells them.
+pub(crate) struct Words {
+    /// Added to the name of a figure.
+    pub(crate) by: &'static str,
+    /// What the map of the target shows.
+    pub(crate) map: &'static str,
+    /// The spot that errors are of.
+    pub(crate) spot: &'static str,
+    /// What is counted as light.
+    pub(crate) lit: &'static str,
+    /// Added to errors on a terminal.
+    pub(crate) warning: &'static str,
+}
+
+/// How a result speaks of figures that come from there.
+pub(crate) const fn words(light_from: LightFrom) -> Words {
+    const GATE: &str = "the laser's gate was open for";
+    match light_from {
+        LightFrom::Simulation => Words {
+            by: "",
+            map: "Where the light fell",
+            spot: "true spot",
+            lit: "light left the head for",
+            warning: "",
+        },
+        LightFrom::Commands => Words {
+            by: ", as commanded",
+            map: "Where the spot was commanded to be while lit",
+            spot: "where the head was told to have the spot, on a target at the distance that was given,",
+            lit: GATE,
+            warning: "; as commanded, nobody measured it",
+        },
+        LightFrom::Encoders => Words {
+            by: ", by the encoders",
+            map: "Where the encoders had the spot while lit",
+            spot: "where the encoders say that the spot is, on a target at the distance that was given,",
+            lit: GATE,
+            warning: "; by the encoders, nobody saw the light",
+        },
     }
 }
 
-/// In a word or two what a badge says, and in a sentence what that means; nothing of a head whose light was seen.
+/// In a word or two what a badge says, and in a sentence what that means.
 pub(crate) const fn badge(origin: Origin) -> (&'static str, &'static str) {
     match (origin.simulated, origin.light_from) {
         (true, LightFrom::Simulation) => {

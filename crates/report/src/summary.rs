@@ -4,7 +4,7 @@ use serde::Serialize;
 use tracelight_eye::figures::EyeFigures;
 use tracelight_pipeline::{AlignFigures, LeftOut, QualityFigures, Standing};
 use tracelight_rig::{Joint, TICK_F64_S};
-use tracelight_sim::Run;
+use tracelight_sim::{LightFrom, Run};
 use tracelight_stroke::Drawing;
 use tracelight_trajectory::Plan;
 
@@ -54,7 +54,8 @@ pub struct Summary {
     pub simulated: bool,
     /// Who tells where the spot was, and so what the errors are of: `simulation`; `encoders` where nobody saw the light, `commands` where nobody
     /// measured the head either.
-    pub light_from: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub light_from: LightFrom,
     /// Wall-clock time of the stages, ms.
     pub timing_ms: TimingFigures,
     /// Seed of the run.
@@ -211,7 +212,7 @@ impl Summary {
             log: None,
             notes: job.notes.to_vec(),
             simulated: job.origin.simulated,
-            light_from: job.origin.light_from.name(),
+            light_from: job.origin.light_from,
             timing_ms: TimingFigures {
                 vision: job.timing.vision_ms,
                 plan: job.timing.plan_ms,
@@ -316,6 +317,10 @@ fn tracking(job: &Finished<'_>) -> TrackingFigures {
         lit_speed_m_s: round(t.lit_speed_m_s),
         at_speed_share: round(t.at_speed_share),
     }
+}
+
+fn by_name<S: serde::Serializer>(light_from: &LightFrom, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(light_from.name())
 }
 
 /// Six decimals: a micrometre, a nanometre in mm, a microsecond.

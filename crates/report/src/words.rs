@@ -1,9 +1,9 @@
 //! A job's figures in words.
 
 use tracelight_eye::figures::EyeFigures;
-use tracelight_sim::LightFrom;
 use tracelight_task::counted;
 
+use crate::origin::words;
 use crate::summary::Summary;
 
 impl Summary {
@@ -34,7 +34,7 @@ impl Summary {
                 self.tracking.max_mm,
                 self.tracking.overshoot_percent,
                 self.tracking.final_error_mm.map_or_else(String::new, |mm| format!(", {mm:.3} mm at rest")),
-                who_saw(self.light_from),
+                words(self.light_from).warning,
             ),
             false => "\nerror:  none to measure, nothing was lit".to_owned(),
         };
@@ -58,14 +58,5 @@ impl Summary {
             }
         }
         text
-    }
-}
-
-/// What is known of errors, by who tells them.
-fn who_saw(light_from: &str) -> &'static str {
-    match light_from {
-        _ if light_from == LightFrom::Encoders.name() => "; by the encoders, nobody saw the light",
-        _ if light_from == LightFrom::Commands.name() => "; as commanded, nobody measured it",
-        _ => "",
     }
 }

@@ -5,7 +5,7 @@ use tracelight_rig::{Command, Rig, Telemetry};
 use tracelight_session::{Session, Untrimmed};
 
 use crate::RigConfig;
-use crate::run::{Simulated, SimulatedRig, Tick, patience_ticks};
+use crate::run::{Simulated, SimulatedRig, Tick, asked_spot, patience_ticks};
 
 /// Who tells where the spot was.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -129,7 +129,7 @@ impl<R: Rig> ByEncoders<R> {
         let control = config.control_config();
         let (on_ticks, off_ticks) = (control.laser_on_ticks, control.laser_off_ticks);
         let laser = Laser { on_ticks, off_ticks, gate: false, since: u32::MAX };
-        let patience_ticks = patience_ticks(config);
+        let patience_ticks = patience_ticks(&control);
         let open_loop = config.drive.kind.is_open_loop();
         let light_from = if open_loop { LightFrom::Commands } else { LightFrom::Encoders };
         let origin = Origin { simulated, light_from };
@@ -173,7 +173,7 @@ impl<R: Rig> Observed for ByEncoders<R> {
             angle_rad,
             rate_rad_s: telemetry.velocity_rad_s.map(f64::from),
             spot: self.geometry.spot(&self.pose, angle_rad),
-            asked: self.geometry.spot(&self.pose, telemetry.setpoint.map(|s| f64::from(s.position_rad))),
+            asked: asked_spot(&self.geometry, &self.pose, &telemetry),
             light,
             telemetry,
         })

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 use tracelight_aim::{HeadGeometry, HeadPose};
-use tracelight_control::{Controller, Estimate, State};
+use tracelight_control::{Config, Controller, Estimate, State};
 use tracelight_plant::Plant;
 use tracelight_rig::{
     Actuation, Command, Fault, FaultRecord, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, Setpoint,
@@ -27,9 +27,14 @@ pub const AFTERMATH_TICKS: u32 = 200;
 /// Ticks a run may take beyond its plan and its longest hold before it is given up.
 const PATIENCE_TICKS: usize = 60_000;
 
-/// Ticks beyond a plan after which a run of such a rig is given up.
-pub(crate) fn patience_ticks(config: &RigConfig) -> usize {
-    PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize
+/// Ticks beyond a plan after which a run of a rig with such a controller is given up.
+pub(crate) const fn patience_ticks(control: &Config) -> usize {
+    PATIENCE_TICKS + control.hold_limit_ticks as usize
+}
+
+/// Where the spot should be of a head that is built so and stands there, by what its controller tells; `None` where that misses the target.
+pub(crate) fn asked_spot(geometry: &HeadGeometry, pose: &HeadPose, told: &Telemetry) -> Option<Point> {
+    geometry.spot(pose, told.setpoint.map(|s| f64::from(s.position_rad)))
 }
 
 /// How far beyond its range a joint comes up against its stop, rad.
@@ -180,7 +185,7 @@ impl SimulatedRig {
             stretch_per_tick: 0.0,
             has_gyroscope: config.truth.gyroscope.fitted,
             coming: Vec::new(),
-            patience_ticks: patience_ticks(config),
+            patience_ticks: patience_ticks(controller.config()),
         }
     }
 
@@ -257,7 +262,7 @@ impl SimulatedRig {
 
     /// Where the spot should be.
     fn asked(&self, telemetry: &Telemetry) -> Option<Point> {
-        self.model.spot(&self.pose, telemetry.setpoint.map(|s| f64::from(s.position_rad)))
+        asked_spot(&self.model, &self.pose, telemetry)
     }
 
     /// Lets the head do a tick; a head without encoders is told where its joints are to be, and where it was homed.

@@ -10,7 +10,7 @@ use tracelight_files::ResultFolder;
 use tracelight_job::{
     Hands, Head, Nobody, Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall,
 };
-use tracelight_operator::{AtWall, Attending};
+use tracelight_operator::{AtWall, Attending, nobody_arms};
 use tracelight_pipeline::told_places;
 use tracelight_port::{At, Device, head};
 use tracelight_report::{LogMeta, Summary};
@@ -111,8 +111,7 @@ fn connected(
         return Err(unhomed());
     }
     if device.rig().wants_a_person() && !args.dry_run && !std::io::stdin().is_terminal() {
-        let message = "a real head is lit only after a person has armed it by a key, and standard input is no terminal: start it in one, or with --dry-run";
-        return Err(Failure::usage("usage", message));
+        return Err(nobody_arms("start it in one, or with --dry-run"));
     }
     if !args.dry_run {
         device.rig_mut().wait_for_light(task)?;

@@ -59,6 +59,11 @@ pub(crate) fn painted(path: &str) -> Result<Raster, Failure> {
 
 /// A preset by name, or a rig file by path.
 pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
+    rig_of(name, "")
+}
+
+/// Likewise; what is neither is told so, and what else it is not.
+fn rig_of(name: &str, nor: &str) -> Result<RigConfig, Failure> {
     if let Some(preset) = RigConfig::preset(name) {
         return Ok(preset);
     }
@@ -76,7 +81,7 @@ pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
         let known: Vec<String> = RigConfig::presets().into_iter().map(|p| p.name).collect();
         let near = nearest(name, known.iter().map(String::as_str));
         let hint = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
-        let message = format!("{name} is no preset ({}) and no rig file{hint}", known.join(", "));
+        let message = format!("{name} is no preset ({}) and no rig file{hint}{nor}", known.join(", "));
         return Err(Failure::usage("rig-file", message));
     }
     let file = rigfile::read(name, files::read(name)?)?;
@@ -87,14 +92,7 @@ pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
 /// Likewise, or a port with the head that is there: `PORT` or `PORT:RIG`.
 pub(crate) fn rig_or_port(name: &str) -> Result<(RigConfig, Option<At>), Failure> {
     let Some((port, head)) = rigfile::at_port(name, is_device) else {
-        let no_port = |failure: Failure| match failure.message.contains("no rig file") {
-            true => Failure {
-                message: format!("{}, and there is no such port of a board", failure.message),
-                ..failure
-            },
-            false => failure,
-        };
-        return Ok((rig(name).map_err(no_port)?, None));
+        return Ok((rig_of(name, ", and there is no such port of a board")?, None));
     };
     let at = At { port: port.into(), is_said: head.is_some() };
     match rig(head.unwrap_or("report"))? {

@@ -1,10 +1,11 @@
 use tracelight_aim::{AimError, HeadGeometry, HeadPose};
 use tracelight_dynamics::{Friction, Lumped, Motor};
-use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
+use tracelight_rig::{Joint, PanTilt, Segment, TICK_F64_S};
 use tracelight_stroke::{Point, Vec2};
 
 use crate::binding::Binding;
 use crate::motion::JointMotion;
+use crate::turn::turn;
 
 /// What the planner believes of head, motors and target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +94,20 @@ impl Machine {
             self.acceleration_rad_s2(j, 0.0, self.usable_nm(j) + helped) / self.jerk_limit_rad_s3[j]
         };
         of_joint(Joint::Pan).max(of_joint(Joint::Tilt))
+    }
+
+    /// A dark segment that turns both joints from rest to rest, rad, as [`turn`](crate::turn) does: no faster than that many rad/s and no more suddenly than that many
+    /// rad/s², nor than either joint may.
+    pub fn turn(
+        &self,
+        from_rad: PanTilt<f64>,
+        to_rad: PanTilt<f64>,
+        (speed_rad_s, acceleration_rad_s2): (f64, f64),
+    ) -> Segment {
+        let least = |limits: PanTilt<f64>, wish: f64| limits.pan.min(limits.tilt).min(wish);
+        let speed_rad_s = least(self.speed_limit_rad_s, speed_rad_s);
+        let acceleration_rad_s2 = least(self.acceleration_limit_rad_s2, acceleration_rad_s2);
+        turn(from_rad, to_rad, (speed_rad_s, acceleration_rad_s2))
     }
 
     /// What a plan may use of a motor's torque, N m.

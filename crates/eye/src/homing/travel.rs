@@ -3,7 +3,6 @@
 use tracelight_rig::{Fault, FaultRecord, Joint, PanTilt, Phase, Telemetry};
 use tracelight_session::{Job, Request, State};
 use tracelight_task::Failure;
-use tracelight_trajectory::turn;
 
 use crate::Driven;
 use crate::homing::state::{BEFORE_STOP_RAD, Homing, REST_TICKS};
@@ -116,11 +115,7 @@ impl<D: Driven> Homing<'_, D> {
         if from == to {
             return Ok(None);
         }
-        let machine = &self.driving.machine;
-        let least = |limits: PanTilt<f64>| limits.pan.min(limits.tilt);
-        let speed_rad_s = least(machine.speed_limit_rad_s).min(GENTLE_RAD_S);
-        let acceleration_rad_s2 = least(machine.acceleration_limit_rad_s2).min(GENTLE_RAD_S2);
-        let turn = turn(from, to, (speed_rad_s, acceleration_rad_s2));
+        let turn = self.driving.machine.turn(from, to, (GENTLE_RAD_S, GENTLE_RAD_S2));
         self.begin()?;
         self.rig.ask(Request::Jog(Job { segments: vec![turn], ..Job::default() }))?;
         let most = 2 * u32::from(turn.ticks) + 5000;

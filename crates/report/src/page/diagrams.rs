@@ -8,7 +8,7 @@ use super::html::number;
 use super::plot::Plot;
 use crate::finished::Finished;
 use crate::limit;
-use crate::origin::told_by;
+use crate::origin::words;
 use crate::sample::{Sample, samples};
 
 /// Marks along the time axis; on a phone their labels still stand apart.
@@ -96,7 +96,11 @@ fn error(over: &Over<'_>) -> Plot {
     let dark_error = |s: &Sample<'_>| s.error_mm().filter(|&e| !s.tick.light && e <= y.high());
     let dark = over.dark_note(y.high(), "mm", size);
     let plot = over
-        .plot(&format!("Tracking error{}", told_by(over.job.origin)), "spot to its planned place, mm", y)
+        .plot(
+            &format!("Tracking error{}", words(over.job.origin.light_from).by),
+            "spot to its planned place, mm",
+            y,
+        )
         .line("dark", &over.curve(&y, dark_error), Some("while dark"))
         .band("error", &over.band(&y, lit_error), Some("while lit: mean, and lowest to highest"));
     let name = format!("limit {} mm", number(limit, 2));

@@ -1,7 +1,6 @@
 use std::fmt::Write;
 
 use tracelight_chart::{ERROR_STEPS_MM, STEPS, error_step};
-use tracelight_sim::LightFrom;
 use tracelight_stroke::{Affine, Point};
 
 use super::axis::round_step;
@@ -9,7 +8,7 @@ use super::curve::tenth;
 use super::html::{escaped, jpeg_uri, number};
 use crate::error::EncodeError;
 use crate::finished::Finished;
-use crate::origin::told_by;
+use crate::origin::words;
 use crate::sample::{Sample, samples};
 
 /// The longer side of the map in its own units; a tenth of one is kept.
@@ -21,7 +20,7 @@ const NUMBERED: usize = 24;
 
 /// The picture with the lit trace on it, coloured by its error, and its legend, as HTML.
 pub(super) fn map(job: &Finished<'_>) -> Result<String, EncodeError> {
-    let place = Place::new(job);
+    let (place, words) = (Place::new(job), words(job.origin.light_from));
     let samples = || samples(job.plan, job.run);
     let mut drawn = Trace { bins: Default::default(), travel: String::new(), place: &place };
     drawn.follow(samples());
@@ -35,19 +34,10 @@ pub(super) fn map(job: &Finished<'_>) -> Result<String, EncodeError> {
         layers = layers,
         numbers = numbers(job, &place) + &worst(job, &place),
         bar = bar(&place),
-        scale = scale(&format!("tracking error{}", told_by(job.origin))),
-        heading = heading(job),
+        scale = scale(&format!("tracking error{}", words.by)),
+        heading = words.map,
         name = escaped(&job.title()),
     ))
-}
-
-/// What the map shows.
-const fn heading(job: &Finished<'_>) -> &'static str {
-    match job.origin.light_from {
-        LightFrom::Simulation => "Where the light fell",
-        LightFrom::Commands => "Where the spot was commanded to be while lit",
-        LightFrom::Encoders => "Where the encoders had the spot while lit",
-    }
 }
 
 /// Path data as paths, each in its error's colour.

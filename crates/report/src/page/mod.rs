@@ -17,12 +17,11 @@ mod tables;
 use std::fmt::Write;
 
 use tracelight_picture::Raster;
-use tracelight_sim::LightFrom;
 
 use self::html::{escaped, jpeg_uri};
 use crate::error::EncodeError;
 use crate::finished::Finished;
-use crate::origin::told_by;
+use crate::origin::words;
 use crate::sample::samples;
 use crate::summary::Summary;
 
@@ -35,6 +34,7 @@ pub fn page(job: &Finished<'_>, figures: &Summary, painting: &Raster) -> Result<
     const QUALITY: u8 = 84;
     let jpeg = jpeg_uri(painting, (PAINTING_PX, QUALITY), "report.html")?;
     let (class, verdict) = tables::verdict(job);
+    let words = words(job.origin.light_from);
     Ok(format!(
         include_str!("page.html"),
         style = tracelight_chart::page_colours() + include_str!("style.css"),
@@ -57,23 +57,10 @@ pub fn page(job: &Finished<'_>, figures: &Summary, painting: &Raster) -> Result<
         figures = tables::figures(job, figures),
         settings = tables::settings(job),
         strokes = strokes::section(job),
-        by = told_by(job.origin),
-        spot = spot(job),
+        by = words.by,
+        spot = words.spot,
         version = env!("CARGO_PKG_VERSION"),
     ))
-}
-
-/// The spot that errors are of.
-const fn spot(job: &Finished<'_>) -> &'static str {
-    match job.origin.light_from {
-        LightFrom::Simulation => "true spot",
-        LightFrom::Commands => {
-            "where the head was told to have the spot, on a target at the distance that was given,"
-        }
-        LightFrom::Encoders => {
-            "where the encoders say that the spot is, on a target at the distance that was given,"
-        }
-    }
 }
 
 /// Where the spot was, thinned, for the cursor: `[[t_s, x_mm, y_mm, error_mm, lit], …]`, and the map's frame.
@@ -102,7 +89,7 @@ fn track(job: &Finished<'_>) -> String {
 mod tests {
     use super::*;
     use crate::{fixture, painting};
-    use tracelight_sim::Origin;
+    use tracelight_sim::{LightFrom, Origin};
 
     fn text(job: &Finished<'_>) -> String {
         page(job, &Summary::new(job), &painting::paint(job)).unwrap()

@@ -1,10 +1,9 @@
 use super::html::{escaped, number};
 use crate::events::events;
 use crate::finished::Finished;
-use crate::origin::{badge, told_by};
+use crate::origin::{badge, words};
 use crate::summary::Summary;
 use tracelight_rig::Phase;
-use tracelight_sim::LightFrom;
 use tracelight_vision::Quality;
 
 const METRES_PER_INCH: f64 = 0.0254;
@@ -13,7 +12,7 @@ const METRES_PER_INCH: f64 = 0.0254;
 pub(super) fn tiles(job: &Finished<'_>, figures: &Summary) -> String {
     let t = &figures.tracking;
     let at_speed = t.at_speed_share * 100.0;
-    let by = told_by(job.origin);
+    let by = words(job.origin.light_from).by;
     let tiles = [
         (number(t.rms_mm, 4), "mm", format!("tracking error, rms{by}")),
         (number(t.max_mm, 4), "mm", format!("largest error while lit{by}")),
@@ -28,14 +27,6 @@ pub(super) fn tiles(job: &Finished<'_>, figures: &Summary) -> String {
         format!(r#"<li><strong>{value}<small> {unit}</small></strong><span>{what}</span></li>"#)
     };
     tiles.into_iter().map(tile).collect()
-}
-
-/// What is known of light, where nobody saw it: that its gate was open.
-const fn lit_word(job: &Finished<'_>) -> &'static str {
-    match job.origin.light_from {
-        LightFrom::Simulation => "light left the head for",
-        LightFrom::Commands | LightFrom::Encoders => "the laser's gate was open for",
-    }
 }
 
 /// A run that ended before its drawing did has no error at rest.
@@ -65,7 +56,7 @@ pub(super) fn subtitle(job: &Finished<'_>) -> String {
 /// Every figure of the summary, grouped.
 pub(super) fn figures(job: &Finished<'_>, f: &Summary) -> String {
     let share = |x: f64| number(x * 100.0, 3);
-    let lost = f.run.lost_counts;
+    let (lost, words) = (f.run.lost_counts, words(job.origin.light_from));
     let groups = [
         ("Picture and target".to_owned(), picture_rows(job, f)),
         ("Quality of the picture".to_owned(), job.quality.map(quality_rows).unwrap_or_default()),
@@ -80,7 +71,7 @@ pub(super) fn figures(job: &Finished<'_>, f: &Summary) -> String {
             ],
         ),
         (
-            format!("Tracking{}", told_by(job.origin)),
+            format!("Tracking{}", words.by),
             vec![
                 row("spot to plan, rms", number(f.tracking.rms_mm, 4), "mm"),
                 row("spot to plan, largest", number(f.tracking.max_mm, 4), "mm"),
@@ -90,7 +81,7 @@ pub(super) fn figures(job: &Finished<'_>, f: &Summary) -> String {
                 row("final error", at_rest(f.tracking.final_error_mm), "mm"),
                 row("speed of the lit spot", number(f.tracking.lit_speed_m_s, 4), "m/s"),
                 row("lit time at the set speed ± 2 %", share(f.tracking.at_speed_share), "%"),
-                row(lit_word(job), number(f.laser.lit_s, 4), "s"),
+                row(words.lit, number(f.laser.lit_s, 4), "s"),
                 row("lost counts put back, pan, tilt", format!("{}, {}", lost.pan, lost.tilt), ""),
             ],
         ),

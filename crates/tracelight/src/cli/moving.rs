@@ -1,11 +1,11 @@
 //! A head at a port that is moved by hand: homed where it rests, jogged, parked.
 
 use std::f64::consts::TAU;
-use std::str::FromStr;
 
 use clap::Args;
 use serde_json::json;
 use tracelight_aim::HeadPose;
+use tracelight_eye::corners::angles;
 use tracelight_job::{Jog, Mover, Place};
 use tracelight_operator::asked;
 use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, Driving, request_of};
@@ -14,7 +14,7 @@ use tracelight_rig::PanTilt;
 use tracelight_sim::Observed as _;
 use tracelight_stroke::{Point, Vec2};
 use tracelight_task::{Failure, Stop, Task};
-use tracelight_units::{Angle, Length, Offset, TIMES, parse};
+use tracelight_units::{Length, Offset, TIMES, parse};
 
 use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
@@ -49,8 +49,8 @@ pub(crate) struct HeadArgs {
 )]
 pub(crate) struct HomeArgs {
     /// Where it points instead: pan to the left and tilt down, such as 10deg,-5deg [default: straight ahead]
-    #[arg(long, value_name = "PAN,TILT", allow_hyphen_values = true)]
-    at: Option<Angles>,
+    #[arg(long, value_name = "PAN,TILT", allow_hyphen_values = true, value_parser = within_a_turn)]
+    at: Option<PanTilt<f64>>,
     #[command(flatten)]
     pub(crate) head: HeadArgs,
 }
@@ -67,10 +67,11 @@ pub(crate) struct JogArgs {
     #[arg(
         value_name = "BY",
         allow_hyphen_values = true,
+        value_parser = way,
         required_unless_present = "to",
         conflicts_with = "to"
     )]
-    by: Option<Way>,
+    by: Option<Jog>,
     /// To a place on the target, right and up of its middle, such as 30cm,20cm
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     to: Option<Offset>,
@@ -92,47 +93,26 @@ pub(crate) struct ParkArgs {
 /// Furthest way on a target, m.
 const MOST_M: f64 = 1000.0;
 
-/// Two angles: pan to the left, tilt down.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Angles(PanTilt<f64>);
-
-impl FromStr for Angles {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("{text} is not two angles; give pan and tilt such as 5deg,-2deg");
-        let (pan, tilt) = text.split_once(',').ok_or_else(wrong)?;
-        let angle = |text: &str| {
-            let angle: Angle = text.trim().parse().map_err(|e| format!("{e}"))?;
-            let is_one = angle.0.abs() <= TAU;
-            is_one.then_some(angle).ok_or_else(|| format!("{text} is more than a turn of 360 degrees"))
-        };
-        Ok(Self(PanTilt::new(angle(pan)?.0, angle(tilt)?.0)))
-    }
+/// Two angles of a turn at most: pan to the left, tilt down.
+fn within_a_turn(text: &str) -> Result<PanTilt<f64>, String> {
+    let at = angles(text)?;
+    let is_within = at.pan.abs().max(at.tilt.abs()) <= TAU;
+    is_within.then_some(at).ok_or_else(|| format!("{text} is more than a turn of 360 degrees"))
 }
 
 /// A way to go: by two angles, or by two lengths.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Way(Jog);
-
-impl FromStr for Way {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let angles = text.parse::<Angles>().map(|Angles(by)| Self(Jog::Angles(by)));
-        let lengths = || text.parse::<Offset>().map(|Offset(x, y)| Self(Jog::By(Vec2::new(x.0, y.0))));
-        match (angles, lengths()) {
-            (Ok(way), _) => Ok(way),
-            (Err(_), Ok(Self(Jog::By(by)))) if by.hypot() > MOST_M => {
-                Err(format!("{text} is further than {MOST_M} m, and off every wall"))
-            }
-            (Err(_), Ok(way)) => Ok(way),
-            (Err(why), Err(_)) if why.contains("a turn of") => Err(why),
-            (Err(_), Err(_)) => Err(format!(
-                "{text} is no way to go; give two angles such as 5deg,-2deg, or two lengths such as 10cm,5cm"
-            )),
-        }
+fn way(text: &str) -> Result<Jog, String> {
+    if angles(text).is_ok() {
+        return within_a_turn(text).map(Jog::Angles);
     }
+    let Offset(x, y) = text.parse().map_err(|_| {
+        format!("{text} is no way to go; give two angles such as 5deg,-2deg, or two lengths such as 10cm,5cm")
+    })?;
+    let by = Vec2::new(x.0, y.0);
+    let is_near = by.hypot() <= MOST_M;
+    is_near
+        .then_some(Jog::By(by))
+        .ok_or_else(|| format!("{text} is further than {MOST_M} m, and off every wall"))
 }
 
 /// How long a dot lasts, s.
@@ -144,7 +124,7 @@ fn dot(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn home(args: &HomeArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let at = args.at.map_or(PanTilt::new(0.0, 0.0), |Angles(at)| at);
+    let at = args.at.unwrap_or_default();
     args.head.moved(stop, |mover, _| Ok((mover.home(at)?, None)))
 }
 
@@ -158,7 +138,7 @@ pub(crate) fn jog(args: &JogArgs, stop: &Stop) -> Result<Answer, Failure> {
         if args.dot.is_some() {
             mover.check_dot()?;
         }
-        let place = match to.or(args.by.map(|Way(by)| by)) {
+        let place = match to.or(args.by) {
             Some(jog) => mover.jog(jog)?,
             None => mover.place(),
         };
@@ -225,7 +205,6 @@ mod tests {
 
     #[test]
     fn ways_are_angles_or_lengths() {
-        let way = |text: &str| text.parse::<Way>().map(|Way(jog)| jog);
         assert_eq!(way("10cm,-5mm"), Ok(Jog::By(Vec2::new(0.1, -0.005))));
         let Ok(Jog::Angles(by)) = way("-10deg, 20deg") else { unreachable!() };
         assert!((by.pan.to_degrees() + 10.0).abs() < 1e-9 && (by.tilt.to_degrees() - 20.0).abs() < 1e-9);

@@ -1,7 +1,7 @@
 //! A head at a port: an emulated board that another process serves in real time, as a device node.
 #![cfg(unix)]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
@@ -57,6 +57,15 @@ impl Served {
         command.arg(self.dir.join("lines.csv")).args(["--width", "20cm", "--out"]).arg(self.out(out));
         command.args(more);
         command
+    }
+
+    /// Waits until a run has told how far it came.
+    fn until_on_its_way(&self, out: &str) {
+        let progress = self.out(out).join("progress");
+        let until = Instant::now() + Duration::from_secs(60);
+        while std::fs::metadata(&progress).map_or(0, |file| file.len()) < 20 && Instant::now() < until {
+            std::thread::sleep(Duration::from_millis(20));
+        }
     }
 
     fn summary(&self, out: &str) -> Value {
@@ -155,13 +164,7 @@ fn a_head_that_does_not_know_where_it_points_is_jogged_and_homed_for_the_program
 fn a_program_that_is_killed_leaves_the_head_dark_and_the_rest_to_resume() {
     let served = Served::new("port-killed", &[]);
     let mut killed = served.trace("killed", &["--speed", "10cm/s"]).stdout(Stdio::null()).spawn().unwrap();
-    // on its way
-    let csv = served.out("killed").join("progress");
-    let until = Instant::now() + Duration::from_secs(60);
-    let length = |path: &Path| std::fs::metadata(path).map_or(0, |file| file.len());
-    while length(&csv) < 20 && Instant::now() < until {
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    served.until_on_its_way("killed");
     std::thread::sleep(Duration::from_millis(1500));
     killed.kill().unwrap();
     killed.wait().unwrap();
@@ -177,11 +180,7 @@ fn who_is_interrupted_ends_dark_and_is_gone_on_with() {
     let served = Served::new("port-interrupted", &[]);
     let mut traced = served.trace("interrupted", &["--speed", "5cm/s"]);
     let child = traced.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
-    let until = Instant::now() + Duration::from_secs(60);
-    let progress = served.out("interrupted").join("progress");
-    while std::fs::metadata(&progress).map_or(0, |file| file.len()) < 20 && Instant::now() < until {
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    served.until_on_its_way("interrupted");
     std::thread::sleep(Duration::from_millis(2500));
     let pid = nix::unistd::Pid::from_raw(child.id().cast_signed());
     // a signal that means nothing here is no broken line either
