@@ -69,6 +69,9 @@ pub struct Config {
     pub park_rad: Option<PanTilt<f32>>,
 }
 
+/// How far a joint's end stops may lie beyond its range together, and how far off who tells where it stands may be, rad.
+pub(crate) const UNHOMED_RAD: f32 = 0.2;
+
 impl Config {
     /// Whether joints may be there, by what their encoders count. Those that count from where they were left do not know where their ranges end: only how wide they are.
     pub(crate) fn may_be_at(&self, position_rad: PanTilt<f32>, homed: bool) -> bool {
@@ -78,11 +81,12 @@ impl Config {
         })
     }
 
-    /// Where a joint may be, by what its encoder counts, rad.
+    /// Where a joint may be, by what its encoder counts, rad: not homed, as far as to its end stops from wherever it was powered up.
     pub(crate) fn range_rad(&self, joint: Joint, homed: bool) -> (f32, f32) {
         let JointLimits { lower_rad, upper_rad, .. } = self.axes[joint].limits;
         let width = upper_rad - lower_rad;
-        if homed { (lower_rad, upper_rad) } else { (-width, width) }
+        let most = width + UNHOMED_RAD;
+        if homed { (lower_rad, upper_rad) } else { (-most, most) }
     }
 
     /// How fast a joint speeds up by that share of its motor's torque, wherever it is, at least, rad/s².

@@ -3,7 +3,7 @@ use tracelight_rig::{
     Telemetry,
 };
 
-use crate::config::Config;
+use crate::config::{Config, UNHOMED_RAD};
 use crate::estimate::Estimate;
 use crate::finding::Finding;
 use crate::light_budget::{LightBudget, longest_dot_ticks};
@@ -194,11 +194,9 @@ impl Controller {
 
     /// Whether the joints rest, unarmed, and may be at these counts.
     fn may_home<const SEGMENTS: usize>(&self, state: &State<SEGMENTS>, counts: PanTilt<i32>) -> bool {
-        /// Who tells where a head stands may be so far off, rad.
-        const MARGIN_RAD: f32 = 0.2;
         let is_possible = |j: Joint| {
             let (axis, at) = (&self.config.axes[j], counts[j] as f32 * self.config.axes[j].count_rad);
-            (axis.limits.lower_rad - MARGIN_RAD..=axis.limits.upper_rad + MARGIN_RAD).contains(&at)
+            (axis.limits.lower_rad - UNHOMED_RAD..=axis.limits.upper_rad + UNHOMED_RAD).contains(&at)
         };
         state.supervisor.phase == Phase::Dark
             && rests(state.servo.estimates().map(|estimate| estimate.velocity_rad_s))
@@ -439,7 +437,9 @@ impl Controller {
         for j in Joint::BOTH {
             if let Some(creep) = &self.config.axes[j].creep {
                 let planned = (&played.setpoint[j], &played.ahead[j]);
-                let (now, ahead) = state.paces[j].tick(creep, &state.servo.estimates()[j], planned);
+                let State { paces, servo, player, .. } = &mut *state;
+                let later_rad = |ticks| player.later_rad(j, ticks);
+                let (now, ahead) = paces[j].tick(creep, &servo.estimates()[j], planned, later_rad);
                 (reference.now[j], reference.ahead[j]) = (now, ahead);
             }
         }

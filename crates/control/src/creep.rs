@@ -36,14 +36,15 @@ pub(crate) enum Pace {
 }
 
 impl Pace {
-    /// Where the joint is to be now and half a tick later, given where its plan has it.
+    /// Where the joint is to be now and half a tick later, given where its plan has it, and in so many ticks, rad.
     pub(crate) fn tick(
         &mut self,
         creep: &Creep,
         estimate: &Estimate,
         (now, ahead): (&Setpoint, &Setpoint),
+        later_rad: impl Fn(f32) -> f32,
     ) -> (Setpoint, Setpoint) {
-        *self = self.next(creep, estimate, now);
+        *self = self.next(creep, estimate, (now, later_rad));
         match self {
             Self::Follow => (*now, *ahead),
             Self::Rest(position_rad) => {
@@ -54,11 +55,12 @@ impl Pace {
         }
     }
 
-    fn next(self, creep: &Creep, estimate: &Estimate, now: &Setpoint) -> Self {
+    fn next(self, creep: &Creep, estimate: &Estimate, plan: (&Setpoint, impl Fn(f32) -> f32)) -> Self {
+        let now = plan.0;
         match self {
             Self::Follow if creep.begins(now) => Self::Rest(estimate.position_rad),
             Self::Rest(_) | Self::Hop(_) if creep.ends(now) => Self::Follow,
-            Self::Rest(_) if creep.is_behind(estimate, now) => Self::Hop(creep.hop(estimate, now)),
+            Self::Rest(_) if creep.is_behind(estimate, now) => Self::Hop(creep.hop(estimate, &plan)),
             Self::Hop(hop) if hop.is_over() => Self::Rest(hop.end_rad()),
             same => same,
         }
@@ -89,14 +91,19 @@ impl Creep {
     }
 
     /// The shortest from where the joint is to half a hop ahead of where the plan then is, or as far towards it as a hop reaches.
-    fn hop(&self, estimate: &Estimate, now: &Setpoint) -> Hop {
+    fn hop(&self, estimate: &Estimate, (now, later_rad): &(&Setpoint, impl Fn(f32) -> f32)) -> Hop {
         const SHORTEST: u16 = 2;
         const LONGEST: u16 = 28;
         let half = 0.5 * self.hop_rad;
         let lead = within(Self::LEAD_S * now.velocity_rad_s, half);
         let mut half_ticks = SHORTEST;
         loop {
-            let target = after(now, f32::from(2 * half_ticks) * TICK_S).position_rad + lead;
+            let ticks = f32::from(2 * half_ticks);
+            // a push that is soon over takes it nowhere, and one that is to come is the next hop's
+            let as_now_rad = after(now, ticks * TICK_S).position_rad - now.position_rad;
+            let planned_rad = later_rad(ticks) - now.position_rad;
+            let way_rad = if as_now_rad.abs() < planned_rad.abs() { as_now_rad } else { planned_rad };
+            let target = now.position_rad + way_rad + lead;
             let hop = Hop::new(estimate, target, half_ticks);
             if hop.most_rad_s2() <= self.acceleration_rad_s2 {
                 return hop;
@@ -192,7 +199,9 @@ mod tests {
         (0..ticks).map(move |tick| {
             let time_s = tick as f32 * TICK_S;
             let planned = plan(time_s);
-            let (now, _) = pace.tick(&CREEP, &estimate(&at), (&planned, &plan(time_s + 0.5 * TICK_S)));
+            let later_rad = |ticks: f32| plan(time_s + ticks * TICK_S).position_rad;
+            let ahead = plan(time_s + 0.5 * TICK_S);
+            let (now, _) = pace.tick(&CREEP, &estimate(&at), (&planned, &ahead), later_rad);
             at = now;
             (planned, now)
         })

@@ -1,4 +1,4 @@
-use tracelight_rig::{PanTilt, SPEED_RANGE, Segment, Setpoint, TICK_S, ease_within};
+use tracelight_rig::{Joint, PanTilt, SPEED_RANGE, Segment, Setpoint, TICK_S, ease_within};
 
 use crate::elementary::root;
 use crate::limit::within;
@@ -278,6 +278,21 @@ impl<const SEGMENTS: usize> Player<SEGMENTS> {
             ahead: self.scaled(segment.sample(elapsed + 0.5 * later), later),
             segment: Some(segment),
         }
+    }
+
+    /// Where the plan will have a joint in so many ticks of true time, if its clock goes on as it does, rad.
+    pub(crate) fn later_rad(&self, joint: Joint, ticks: f32) -> f32 {
+        let later = ticks * self.rate;
+        let queued = (0..self.length).filter_map(|i| self.queue[(self.head + i) % SEGMENTS].as_ref());
+        let mut until = None;
+        for segment in queued {
+            let elapsed = self.since(segment.start_tick) + later;
+            if elapsed < 0.0 {
+                break;
+            }
+            until = Some((segment, elapsed.min(f32::from(segment.ticks))));
+        }
+        until.map_or(self.rest[joint].position_rad, |(segment, elapsed)| segment.position_rad(joint, elapsed))
     }
 
     /// Motion by true time of a plan whose clock runs at `rate`: q̇ = q′ρ, q̈ = q″ρ² + q′ρ̇.

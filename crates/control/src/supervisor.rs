@@ -43,6 +43,8 @@ pub(crate) struct Supervisor {
     settled_ticks: u32,
     /// Test moves since an encoder was last trusted.
     tests: u32,
+    /// It was stopped on its way, and rested since: an encoder at rest knows its angle to a count only, and who stopped it may have touched it.
+    rested: bool,
     /// For how long a dot is still wanted while it is disarmed.
     pointing_ticks: u32,
     /// Since the last dot.
@@ -169,7 +171,10 @@ impl Supervisor {
         self.dotless_ticks = if self.pointing_ticks > 0 { 0 } else { self.dotless_ticks.saturating_add(1) };
         match self.phase {
             // a job that was disarmed on its way goes on only from where it stopped, a new one from where it begins
-            Phase::Armed if at.segment.is_some() && (at.begun || strayed(at)) => self.begin_hold(),
+            Phase::Armed if at.segment.is_some() && (at.begun || strayed(at)) => {
+                self.rested = at.begun && !config.drive.is_open_loop();
+                self.begin_hold();
+            }
             Phase::Armed if at.segment.is_some() && at.may_begin && !at.host_silent => {
                 self.phase = Phase::Tracing
             }
@@ -190,6 +195,7 @@ impl Supervisor {
 
     /// The little move in the dark is over.
     pub(crate) fn end_test(&mut self) {
+        self.rested = false;
         if self.phase == Phase::Testing {
             self.begin_hold();
         }
@@ -216,9 +222,10 @@ impl Supervisor {
         self.held_ticks = self.held_ticks.saturating_add(u32::from(!at.host_silent));
         self.settled_ticks = if returned(at) { self.settled_ticks + 1 } else { 0 };
         let is_back = self.settled_ticks >= RETURN_TICKS && !at.host_silent;
-        if is_back && at.tested && at.tried {
+        let is_sure = at.tested && !self.rested;
+        if is_back && is_sure && at.tried {
             self.phase = Phase::Tracing;
-        } else if is_back && !at.tested && self.tests < MOST_TESTS {
+        } else if is_back && !is_sure && self.tests < MOST_TESTS {
             self.phase = Phase::Testing;
             self.tests += 1;
         } else if self.held_ticks > config.hold_limit_ticks {

@@ -1,4 +1,4 @@
-use crate::{PanTilt, RateLimit, Setpoint, TICK_S, ease_per_s};
+use crate::{Joint, PanTilt, RateLimit, Setpoint, TICK_S, ease_per_s};
 
 /// A stretch of motion of both joints: one quintic polynomial a joint over a whole number of ticks.
 ///
@@ -36,6 +36,13 @@ impl Segment {
     /// The setpoint `elapsed_ticks` (fractions allowed) after the segment's start.
     pub fn sample(&self, elapsed_ticks: f32) -> PanTilt<Setpoint> {
         self.coefficients.map(|c| evaluate(&c, elapsed_ticks))
+    }
+
+    /// The angle of one joint then, rad.
+    pub fn position_rad(&self, joint: Joint, elapsed_ticks: f32) -> f32 {
+        let [c0, c1, c2, c3, c4, c5] = self.coefficients[joint];
+        let n = elapsed_ticks;
+        c0 + n * (c1 + n * (c2 + n * (c3 + n * (c4 + n * c5))))
     }
 }
 
