@@ -10,6 +10,8 @@ use tracelight_task::{Failure, Task};
 
 use crate::course::{Wall, gone};
 
+mod stops;
+
 /// Fastest and most sudden that a joint is jogged.
 const GENTLE_RAD_S: f64 = 1.0;
 const GENTLE_RAD_S2: f64 = 4.0;
@@ -119,10 +121,17 @@ impl<'a> Mover<'a> {
     pub fn home(&mut self, at_rad: PanTilt<f64>) -> Result<Place, Failure> {
         self.check_range(at_rad, "would be")?;
         let count_rad = self.driving.rig.model.encoder.count_rad();
-        self.ask(Request::Home(at_rad.map(|angle| (angle / count_rad).round() as i32)))?;
+        self.home_at(at_rad.map(|angle| (angle / count_rad).round() as i32))
+    }
+
+    /// The same by what its encoders are to read.
+    fn home_at(&mut self, counts: PanTilt<i32>) -> Result<Place, Failure> {
+        let count_rad = self.driving.rig.model.encoder.count_rad();
+        self.ask(Request::Home(counts))?;
         let off_rad = |wall: &Wall<'_>| {
             let at = wall.told().position_rad;
-            Joint::BOTH.into_iter().map(|j| (f64::from(at[j]) - at_rad[j]).abs()).fold(0.0, f64::max)
+            let off = |j: Joint| (f64::from(at[j]) - f64::from(counts[j]) * count_rad).abs();
+            Joint::BOTH.into_iter().map(off).fold(0.0, f64::max)
         };
         self.wait(HOME_TICKS, |wall| wall.told().homed && off_rad(wall) < 0.5 * count_rad + 1e-3)?;
         // a board keeps the zero of a head that rests
@@ -308,15 +317,21 @@ impl<'a> Mover<'a> {
         self.wall.request(request).map_err(refused)
     }
 
-    /// One tick; whatever ends it darkens first.
+    /// One tick, of a head without a fault.
     fn step(&mut self) -> Result<(), Failure> {
+        self.observe()?;
+        self.last.telemetry.latched.map_or(Ok(()), |record| Err(Failure::fault(record)))
+    }
+
+    /// One tick, whatever is wrong with the head; who is stopped darkens it first.
+    fn observe(&mut self) -> Result<(), Failure> {
         if self.task.stop.is_wanted() {
             let _ = self.wall.request(Request::Stop);
             observed_tick(&mut self.wall);
             return Err(Failure::interrupted());
         }
         self.last = observed_tick(&mut self.wall).ok_or_else(gone)?;
-        self.last.telemetry.latched.map_or(Ok(()), |record| Err(Failure::fault(record)))
+        Ok(())
     }
 }
 

@@ -23,11 +23,11 @@ impl Mechanism {
         Self::Belted { belted, encoders_at_motors: wear.encoders_at_motors }
     }
 
-    /// How fast the joints turn, which carry the beam, rad/s.
-    pub(crate) const fn rate_rad_s(&self, seen: &JointState) -> PanTilt<f64> {
+    /// Where the joints are, which carry the beam, and how fast they turn.
+    pub(crate) const fn joints(&self, seen: &JointState) -> JointState {
         match self {
-            Self::Rigid(_) => seen.rate_rad_s,
-            Self::Belted { belted, .. } => belted.joints().rate_rad_s,
+            Self::Rigid(_) => *seen,
+            Self::Belted { belted, .. } => *belted.joints(),
         }
     }
 

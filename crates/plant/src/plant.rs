@@ -138,7 +138,10 @@ impl Plant {
     /// Adds end stops to the joints, lower and upper, rad.
     #[must_use]
     pub fn between_stops(mut self, config: &PlantConfig, stops_rad: PanTilt<(f64, f64)>) -> Self {
-        let inertia_kg_m2 = config.bodies.lumped().mass(0.0).own_inertia();
+        let inertia_kg_m2 = match self.mechanism {
+            Mechanism::Rigid(_) => config.bodies.lumped().mass(0.0).own_inertia(),
+            Mechanism::Belted { .. } => carried_kg_m2(config),
+        };
         let stops = |j: Joint| Stops { at_rad: stops_rad[j], inertia_kg_m2: inertia_kg_m2[j] };
         self.stops = Some(PanTilt::from_fn(stops));
         self
@@ -300,15 +303,18 @@ impl Plant {
         let from = self.state.angle_rad;
         self.follow_command(asked_nm, length_s);
         let pull = self.wear.cable_nm_per_rad;
-        let stopped =
-            |j: Joint| self.stops.map_or(0.0, |stops| stops[j].torque_nm(from[j], self.state.rate_rad_s[j]));
+        let joints = self.mechanism.joints(&self.state);
+        // what comes up against a stop is what hangs on a belt, not its motor
+        let stopped = |j: Joint| {
+            self.stops.map_or(0.0, |stops| stops[j].torque_nm(joints.angle_rad[j], joints.rate_rad_s[j]))
+        };
         let thrown = self.foot.torque_nm();
         let others = PanTilt::from_fn(|j| {
             self.push_nm[j] + thrown[j] - pull * (from[j] - self.cable_rest_rad[j]) + stopped(j)
         });
-        let before = self.mechanism.rate_rad_s(&self.state);
+        let before = joints.rate_rad_s;
         let carried = self.mechanism.step(&mut self.state, self.current_nm, others, length_s);
-        let after = self.mechanism.rate_rad_s(&self.state);
+        let after = self.mechanism.joints(&self.state).rate_rad_s;
         self.foot.substep(PanTilt::from_fn(|j| (after[j] - before[j]) / length_s), length_s);
         let to = self.state.angle_rad;
         let end_age = 1.0 - f64::from(number + 1) * LENGTH;

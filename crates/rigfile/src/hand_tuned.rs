@@ -3,6 +3,7 @@
 use tracelight_sim::{Feedforward, RigConfig};
 use tracelight_units::Unit;
 
+use crate::homing::HOMING_KEYS;
 use crate::keys::{Choice, Key, PURE, RIG_KEYS, STIFFNESS, VISCOUS, choice, flag, real};
 use crate::safety::SAFETY_KEYS;
 
@@ -79,10 +80,11 @@ fn named(feedforward: Feedforward) -> &'static str {
     FEEDFORWARDS.iter().find(|(_, is)| *is == feedforward).map_or("none", |(name, _)| name)
 }
 
-/// Keys of `[truth.wear]`, `[control]`, `[motion]`, `[laser]` and `[safety]`.
+/// Keys of `[truth.wear]`, `[control]`, `[motion]`, `[laser]`, `[safety]` and `[homing]`.
 pub(crate) fn rig_keys() -> Vec<Key<RigConfig>> {
     let mut keys = RIG_KEYS.to_vec();
     keys.extend(SAFETY_KEYS);
+    keys.extend(HOMING_KEYS);
     keys.extend(by_hand!(pan));
     keys.extend(by_hand!(tilt));
     keys

@@ -10,6 +10,7 @@ mod drives;
 mod found;
 mod hand_tuned;
 pub mod head;
+mod homing;
 mod keys;
 mod names;
 mod pages;
@@ -23,6 +24,7 @@ mod whole;
 
 pub use drives::{measured, set_law};
 pub use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
+pub use homing::homing_section;
 pub use names::{at_port, emulated};
 pub use pages::PageName;
 pub use rig::{RigFile, parse, read, write};

@@ -3,6 +3,7 @@
 use tracelight_sim::{LightSettings, Model, RigConfig};
 
 use crate::drives::impossible_drive;
+use crate::homing::impossible_stops;
 use crate::safety::impossible_park;
 
 /// Refuses a rig that there cannot be.
@@ -12,6 +13,7 @@ use crate::safety::impossible_park;
 pub(crate) fn possible(config: &RigConfig) -> Result<(), String> {
     if let Some(trouble) = impossible_laser(config)
         .or_else(|| impossible_park(config))
+        .or_else(|| impossible_stops(config))
         .or_else(|| impossible_drive(config))
         .or_else(|| impossible_silence(config))
     {

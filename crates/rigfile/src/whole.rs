@@ -74,7 +74,7 @@ impl LeftOut {
     }
 }
 
-/// Paths of all keys of a rig with that drive but those of what need not be: what was identified, a truth that differs, where a head is parked, and how long
+/// Paths of all keys of a rig with that drive but those of what need not be: what was identified, a truth that differs, where a head is parked, where its joints end, and how long
 /// light may stand, which follows from its power.
 fn needed(kind: DriveKind) -> Vec<String> {
     let models = model_keys().into_iter().map(|key| format!("model.{}", key.path));
@@ -103,6 +103,7 @@ mod tests {
         own.identified = Some(Identified { date: "2026-11-28".into(), ..Identified::NONE });
         own.light.standing_s = 0.5;
         (own.safety.park_rad.pan, own.safety.park_rad.tilt) = (Some(0.5), Some(0.7));
+        (own.stops_rad.pan, own.stops_rad.tilt) = ((Some(-3.5), Some(3.5)), (Some(-2.0), Some(2.1)));
         RigConfig::presets().into_iter().chain([own]).collect()
     }
 

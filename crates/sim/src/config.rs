@@ -33,6 +33,8 @@ pub struct RigConfig {
     pub light: LightSettings,
     /// When it is dark although nothing is wrong with the head.
     pub safety: SafetySettings,
+    /// Where its joints come up against their end stops, lower and upper, rad: all four where that was measured, or none.
+    pub stops_rad: PanTilt<(Option<f64>, Option<f64>)>,
     /// Whether a board drives it that is emulated behind a wire, in place of a controller in this process; no part of a rig file.
     pub emulated: Option<Emulation>,
 }
@@ -139,6 +141,12 @@ impl RigConfig {
     /// What was identified of a joint beyond its equations.
     pub fn quirks_of(&self, joint: Joint) -> Quirks {
         self.identified.as_ref().map_or(Quirks::NONE, |identified| identified.quirks[joint])
+    }
+
+    /// Where its joints come up against their end stops, lower and upper, rad; `None` where that was not measured.
+    pub fn known_stops_rad(&self) -> Option<PanTilt<(f64, f64)>> {
+        let PanTilt { pan, tilt } = self.stops_rad;
+        Some(PanTilt::new((pan.0?, pan.1?), (tilt.0?, tilt.1?)))
     }
 
     /// Sets a law, and an observer: the rig's own where it is the rig's own law, the law's for another.

@@ -71,6 +71,7 @@ impl RigConfig {
             },
             light: LightSettings::POINTER,
             safety: SafetySettings::USUAL,
+            stops_rad: PanTilt::new((None, None), (None, None)),
             emulated: None,
         }
     }

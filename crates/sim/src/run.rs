@@ -148,20 +148,19 @@ impl SimulatedRig {
         rig.emulated(config, seed)
     }
 
-    /// Makes a rig that was just powered up: at rest within a count of these angles, rad, with its encoders at zero there. Its joints have end
-    /// stops a degree beyond their ranges.
+    /// Makes a rig that was just powered up: at rest within a count of these angles, rad, with its encoders at zero there.
     pub fn unhomed(config: &RigConfig, pose: HeadPose, angle_rad: PanTilt<f64>, seed: u64) -> Self {
-        let plant = config.plant_config();
-        let range_rad = config.truth.model.geometry.range_rad;
-        let stops_rad = range_rad.map(|(lower, upper)| (lower - STOP_RAD, upper + STOP_RAD));
-        let plant = Plant::resting_at(&plant, angle_rad, seed).between_stops(&plant, stops_rad);
+        let plant = Plant::resting_at(&config.plant_config(), angle_rad, seed);
         let mut rig = Self::of(config, pose, plant, seed);
         rig.power_up();
         rig.emulated(config, seed)
     }
 
-    /// A rig with this plant, homed, its encoders read as they are.
+    /// A rig with this plant, homed, its encoders read as they are. Its joints have end stops a degree beyond their ranges.
     fn of(config: &RigConfig, pose: HeadPose, plant: Plant, seed: u64) -> Self {
+        let range_rad = config.truth.model.geometry.range_rad;
+        let stops_rad = range_rad.map(|(lower, upper)| (lower - STOP_RAD, upper + STOP_RAD));
+        let plant = plant.between_stops(&config.plant_config(), stops_rad);
         let controller = Controller::new(config.control_config());
         // homed: count 0 on both
         let sensed = Sensed {

@@ -60,6 +60,14 @@ const MESSAGES: &[(&str, &str)] = &[
         "A dot was asked for, and the head let no light out. The message names the reasons for darkness; each has its own explanation (tracelight explain host-silent).",
     ),
     (
+        "stops",
+        "The end stops of a head are not where they should be: it does not stop at the same place twice, not as far apart as its rig file's [homing] says, or within its range. See whether something is in its way; tracelight home --find-stops measures them on a head that is homed.",
+    ),
+    (
+        "no-stop",
+        "A joint was turned as far as it may go without a zero, and came up against nothing. It has no end stop that way, or its range in the rig file is narrower than what it turns.",
+    ),
+    (
         "align",
         "The marks of --align do not say where the drawing goes: they lie too near each other or on one line, mirror it, or are in a unit that the drawing does not have. Choose marks near the corners of the drawing; a DXF and a CSV have coordinates of their own, pictures are measured in px from the top left.",
     ),

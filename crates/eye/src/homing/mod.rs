@@ -32,6 +32,7 @@ use crate::homing::state::{Homing, REST_TICKS, anywhere};
 use crate::power::check_homed;
 
 pub use crate::homing::state::Homed;
+pub use crate::homing::travel::may_be_a_stop;
 
 /// Fewest spots by which a known head is homed.
 const FEWEST_SPOTS: usize = 12;

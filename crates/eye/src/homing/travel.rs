@@ -178,7 +178,8 @@ impl<D: Driven> Homing<'_, D> {
 }
 
 /// Whether a joint that comes up against something may have this fault.
-const fn may_be_a_stop(fault: Fault) -> bool {
+#[must_use]
+pub const fn may_be_a_stop(fault: Fault) -> bool {
     matches!(
         fault,
         Fault::EncoderJumped

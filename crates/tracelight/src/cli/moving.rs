@@ -11,16 +11,17 @@ use tracelight_operator::asked;
 use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, Driving, request_of};
 use tracelight_port::{At, head};
 use tracelight_rig::PanTilt;
+use tracelight_rigfile::homing_section;
 use tracelight_sim::Observed as _;
 use tracelight_stroke::{Point, Vec2};
 use tracelight_task::{Failure, Stop, Task};
 use tracelight_units::{Length, Offset, TIMES, parse};
 
-use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::stand_by;
 use crate::cli::placing::positive_length;
 use crate::named;
+use tracelight_operator::Bar;
 
 /// The head at a port, and where it stands.
 #[derive(Args, Clone, Debug)]
@@ -41,16 +42,23 @@ pub(crate) struct HeadArgs {
 /// Tell a head that it points straight ahead now, or where it points
 ///
 /// A head whose encoders count from where they are powered up does not know where it points. Jog it until it points straight ahead, with a dot to see it
-/// by, then this makes that its zero. It is known until the board loses power, also to programs that come later.
+/// by, then this makes that its zero; or let it find its end stops, where it has some. It is known until the board loses power, also to programs that come later.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: tracelight jog 3deg,0deg --dot 2s --rig /dev/ttyACM0:my-head.toml\n         \
-                  tracelight home --rig /dev/ttyACM0:my-head.toml"
+                  tracelight home --rig /dev/ttyACM0:my-head.toml\n         \
+                  tracelight home --by-stops --rig /dev/ttyACM0:my-head.toml"
 )]
 pub(crate) struct HomeArgs {
     /// Where it points instead: pan to the left and tilt down, such as 10deg,-5deg [default: straight ahead]
     #[arg(long, value_name = "PAN,TILT", allow_hyphen_values = true, value_parser = within_a_turn)]
     at: Option<PanTilt<f64>>,
+    /// Home it by its end stops, which the rig file's [homing] tells: each joint comes up against them gently, in the dark
+    #[arg(long, conflicts_with = "at")]
+    by_stops: bool,
+    /// Find where the end stops of a head are that is homed, and print them for its rig file
+    #[arg(long, conflicts_with_all = ["at", "by_stops"])]
+    find_stops: bool,
     #[command(flatten)]
     pub(crate) head: HeadArgs,
 }
@@ -125,11 +133,40 @@ fn dot(text: &str) -> Result<f64, String> {
 
 pub(crate) fn home(args: &HomeArgs, stop: &Stop) -> Result<Answer, Failure> {
     let at = args.at.unwrap_or_default();
-    args.head.moved(stop, |mover, _| Ok((mover.home(at)?, None)))
+    args.head.moved(stop, |mover, _| match (args.by_stops, args.find_stops) {
+        (true, _) => Ok(Moved::to(mover.home_by_stops()?)),
+        (_, true) => {
+            let stops_rad = mover.find_stops()?;
+            Ok(Moved { stops_rad: Some(stops_rad), ..Moved::to(mover.place()) })
+        }
+        _ => Ok(Moved::to(mover.home(at)?)),
+    })
+}
+
+/// What was done with a head.
+struct Moved {
+    place: Place,
+    /// For how long its gate was open, s.
+    dot_s: Option<f64>,
+    stops_rad: Option<PanTilt<(f64, f64)>>,
+}
+
+impl Moved {
+    const fn to(place: Place) -> Self {
+        Self { place, dot_s: None, stops_rad: None }
+    }
+
+    /// What there is to say besides where it is.
+    fn words(&self) -> String {
+        let lit = self.dot_s.map_or_else(String::new, |s| format!("; its gate was open for {s:.2} s"));
+        lit + &self.stops_rad.map_or_else(String::new, |stops| {
+            format!("; its end stops:\n\n{}", homing_section(stops.pan, stops.tilt))
+        })
+    }
 }
 
 pub(crate) fn park(args: &ParkArgs, stop: &Stop) -> Result<Answer, Failure> {
-    args.head.moved(stop, |mover, _| Ok((mover.park()?, None)))
+    args.head.moved(stop, |mover, _| Ok(Moved::to(mover.park()?)))
 }
 
 pub(crate) fn jog(args: &JogArgs, stop: &Stop) -> Result<Answer, Failure> {
@@ -142,7 +179,7 @@ pub(crate) fn jog(args: &JogArgs, stop: &Stop) -> Result<Answer, Failure> {
             Some(jog) => mover.jog(jog)?,
             None => mover.place(),
         };
-        let Some(lasts_s) = args.dot else { return Ok((place, None)) };
+        let Some(lasts_s) = args.dot else { return Ok(Moved::to(place)) };
         if arms {
             asked(
                 &format!("{}; A lets a dot out there for {lasts_s} s, any other key none", place.words()),
@@ -150,7 +187,7 @@ pub(crate) fn jog(args: &JogArgs, stop: &Stop) -> Result<Answer, Failure> {
                 |wait| mover.hold(wait),
             )?;
         }
-        Ok((place, Some(mover.dot(lasts_s)?)))
+        Ok(Moved { dot_s: Some(mover.dot(lasts_s)?), ..Moved::to(place) })
     })
 }
 
@@ -159,7 +196,7 @@ impl HeadArgs {
     fn moved(
         &self,
         stop: &Stop,
-        what: impl FnOnce(&mut Mover<'_>, (bool, Task<'_>)) -> Result<(Place, Option<f64>), Failure>,
+        what: impl FnOnce(&mut Mover<'_>, (bool, Task<'_>)) -> Result<Moved, Failure>,
     ) -> Result<Answer, Failure> {
         let bar = Bar::new(self.voice.quiet);
         let task = Task { progress: &bar, stop };
@@ -170,14 +207,18 @@ impl HeadArgs {
         let moved =
             Mover::new(&mut device, &driving, task).and_then(|mut mover| what(&mut mover, (arms, task)));
         // it knows why it is gone
-        let (place, dot_s) = moved.map_err(|why| device.rig().failure().unwrap_or(why))?;
-        let lit = dot_s.map_or_else(String::new, |s| format!("; its gate was open for {s:.2} s"));
+        let moved = moved.map_err(|why| device.rig().failure().unwrap_or(why))?;
+        let Moved { place, dot_s, stops_rad } = &moved;
         let spot_mm = place.spot.map(|spot| [1e3 * spot.x, 1e3 * spot.y]);
         let json = json!({
             "homed": place.homed, "pan_deg": place.angle_rad.pan.to_degrees(), "tilt_deg": place.angle_rad.tilt.to_degrees(),
             "spot_mm": spot_mm, "light_from": origin.light_from.name(), "simulated": origin.simulated, "gate_open_s": dot_s,
+            "stops_deg": stops_rad.map(|stops| {
+                let degrees = |(lower, upper): (f64, f64)| [lower.to_degrees(), upper.to_degrees()];
+                json!({ "pan": degrees(stops.pan), "tilt": degrees(stops.tilt) })
+            }),
         });
-        Ok(Answer::new(place.words() + &lit, json.to_string()))
+        Ok(Answer::new(place.words() + &moved.words(), json.to_string()))
     }
 
     fn driving(&self) -> Result<(Driving, At), Failure> {

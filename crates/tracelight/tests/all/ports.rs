@@ -161,6 +161,44 @@ fn a_head_that_does_not_know_where_it_points_is_jogged_and_homed_for_the_program
 }
 
 #[test]
+fn a_head_that_was_just_powered_up_homes_itself_by_its_end_stops() {
+    let rig = folder("port-stops-rig").join("narrow.toml");
+    let ranges = [
+        "pan.range_min = \"-3deg\"",
+        "pan.range_max = \"4deg\"",
+        "tilt.range_min = \"-3deg\"",
+        "tilt.range_max = \"3deg\"",
+    ];
+    let told = |stops: &str| {
+        format!("base = \"report\"\nname = \"narrow\"\n[model]\n{}\n{stops}", ranges.join("\n"))
+    };
+    std::fs::write(&rig, told("")).unwrap();
+    let served = Served::new("port-stops", &["--sim-unhomed", "--seed", "5", "--rig", rig.to_str().unwrap()]);
+    let port = format!("{}:{}", served.port().display(), rig.display());
+    let home = |how: &str| program().args(["home", how, "--json", "--rig", &port]).output().unwrap();
+    let unknown = home("--by-stops");
+    assert!(!unknown.status.success() && text(&unknown).contains("--find-stops"), "{}", text(&unknown));
+    let stops = |pan_max: &str| {
+        format!(
+            "[homing]\npan_stop_min = \"-4deg\"\npan_stop_max = \"{pan_max}\"\ntilt_stop_min = \"-4deg\"\ntilt_stop_max = \"4deg\"\n"
+        )
+    };
+    std::fs::write(&rig, told(&stops("3.9deg"))).unwrap();
+    let within = home("--by-stops");
+    assert!(text(&within).contains("model.pan.range_max must end before it"), "{}", text(&within));
+    std::fs::write(&rig, told(&stops("5deg"))).unwrap();
+    let homed = json(&home("--by-stops"));
+    assert!(homed["homed"] == true && homed["pan_deg"].as_f64().unwrap().abs() < 0.1, "{homed}");
+    let found = json(&home("--find-stops"));
+    for (joint, ends) in [("pan", [-4.0, 5.0]), ("tilt", [-4.0, 4.0])] {
+        for (at, end) in ends.into_iter().enumerate() {
+            let stop = found["stops_deg"][joint][at].as_f64().unwrap();
+            assert!((stop - end).abs() < 0.15, "{found}");
+        }
+    }
+}
+
+#[test]
 fn a_program_that_is_killed_leaves_the_head_dark_and_the_rest_to_resume() {
     let served = Served::new("port-killed", &[]);
     let mut killed = served.trace("killed", &["--speed", "10cm/s"]).stdout(Stdio::null()).spawn().unwrap();
