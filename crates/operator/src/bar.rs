@@ -21,14 +21,17 @@ const EVERY: Duration = Duration::from_millis(100);
 const TRACK: (usize, usize) = (30, 4);
 
 /// A bar with the stage's name when stderr is a terminal, nothing otherwise.
-pub(crate) struct Bar {
+#[derive(Debug)]
+pub struct Bar {
     bar: ProgressBar,
     quiet: bool,
     began: Instant,
 }
 
 impl Bar {
-    pub(crate) fn new(quiet: bool) -> Self {
+    /// One on standard error; quiet, nothing is said either.
+    #[must_use]
+    pub fn new(quiet: bool) -> Self {
         let shown = !quiet && std::io::stderr().is_terminal();
         Self::on(if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() }, quiet)
     }

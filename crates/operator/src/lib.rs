@@ -5,8 +5,10 @@
 
 mod asked;
 mod at_wall;
+mod bar;
 mod keys;
 
 pub use asked::{asked, nobody_arms};
 pub use at_wall::{AtWall, Attending};
+pub use bar::Bar;
 pub use keys::{Key, Keys};

@@ -1,6 +1,5 @@
 //! Tracelight: give it a picture, and a pan/tilt laser head draws it on the wall, to scale.
 
-mod bar;
 mod cli;
 mod fonts;
 mod interrupt;

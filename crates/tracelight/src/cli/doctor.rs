@@ -5,10 +5,10 @@ use tracelight_port::{Found, examine, examined_json, examined_text, found};
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Stop, Task};
 
-use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::eyes::ImageSize;
 use crate::named;
+use tracelight_operator::Bar;
 
 /// List connected boards and cameras: what a board is and how good its line; modes, frame rate and latency of a camera
 #[derive(Args, Debug)]

@@ -11,7 +11,6 @@ use tracelight_stroke::Effort;
 use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::{LitSpeed, Plan};
 
-use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::{DrivingArgs, stand_by};
 use crate::cli::ending::ends_in;
@@ -23,6 +22,7 @@ use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::wall::WallArgs;
 use crate::named;
+use tracelight_operator::Bar;
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]

@@ -9,10 +9,10 @@ use tracelight_rig::wire::Greeting;
 use tracelight_sim::SimulatedRig;
 use tracelight_task::{Failure, Stop, Task};
 
-use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::by_hand::each;
 use crate::named;
+use tracelight_operator::Bar;
 
 /// Emulate a board for programs that speak the wire's language
 #[derive(Args, Debug)]

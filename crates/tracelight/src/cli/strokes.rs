@@ -15,7 +15,6 @@ use tracelight_report::drawing::{self, FORMATS};
 use tracelight_task::{Failure, Progress as _, Stop, Task, counted, meaning};
 use tracelight_vision::Stages;
 
-use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice, print_piece};
 use crate::cli::gcode::GcodeArgs;
 use crate::cli::lettering::LetteringArgs;
@@ -24,6 +23,7 @@ use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::wall::WallArgs;
 use crate::named;
+use tracelight_operator::Bar;
 
 /// Find the strokes of pictures, without a rig
 #[derive(Args, Debug)]

@@ -13,13 +13,13 @@ use tracelight_rigfile::head::{HeadFile, HeadScore, KnownHead, NewHead};
 use tracelight_session::Session;
 use tracelight_task::{Failure, Stop, Task};
 
-use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::DrivingArgs;
 use crate::cli::ending::toml;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::named;
+use tracelight_operator::Bar;
 
 /// Position and direction of the head, from dots that it draws and a camera sees
 #[derive(Args, Debug)]

@@ -8,8 +8,8 @@ use tracelight_experiment::{Experiment, Filed, Finding, Plotted, svg};
 use tracelight_files as files;
 use tracelight_task::{Failure, Stop, Task};
 
-use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
+use tracelight_operator::Bar;
 
 /// A command of the bench.
 pub(super) trait LabCommand {

@@ -6,8 +6,8 @@ use tracelight_files as files;
 use tracelight_task::{Failure, Stop, Task};
 
 use super::command::make_folder;
-use crate::bar::Bar;
 use crate::cli::answer::{Answer, Performs, Voice};
+use tracelight_operator::Bar;
 
 /// Reproduce the figures and tables of the 2006 report on one page, its numbers beside ours, with what explains each difference
 #[derive(Args, Debug)]
