@@ -37,6 +37,11 @@ pub(crate) enum Pace {
 
 impl Pace {
     /// Where the joint is to be now and half a tick later, given where its plan has it, and in so many ticks, rad.
+    #[expect(
+        clippy::inline_always,
+        reason = "a hundred instructions of every tick: nothing of it need be put by"
+    )]
+    #[inline(always)]
     pub(crate) fn tick(
         &mut self,
         creep: &Creep,
@@ -55,6 +60,8 @@ impl Pace {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "as of what calls it")]
+    #[inline(always)]
     fn next(self, creep: &Creep, estimate: &Estimate, plan: (&Setpoint, impl Fn(f32) -> f32)) -> Self {
         let now = plan.0;
         match self {
@@ -70,6 +77,8 @@ impl Pace {
 impl Creep {
     /// What is this much faster is not slow any more.
     const FASTER: f32 = 1.25;
+    /// So far ahead it is seen what the plan does, ticks: most hops are over then.
+    const SEEN_TICKS: f32 = 16.0;
     /// A plan so slow that it takes longer than this for half a hop, s, is gone ahead of by as much as it goes in that time.
     const LEAD_S: f32 = 0.06;
 
@@ -90,20 +99,28 @@ impl Creep {
         lag.abs() >= if forward { 0.5 * self.hop_rad } else { self.hop_rad }
     }
 
+    /// The plan now, with no more acceleration than takes it where it will be: a push that is soon over takes it nowhere, and one that is to come is the next hop's.
+    fn as_planned(&self, (now, later_rad): &(&Setpoint, impl Fn(f32) -> f32)) -> Setpoint {
+        let time_s = Self::SEEN_TICKS * TICK_S;
+        let as_now_rad = after(now, time_s).position_rad - now.position_rad;
+        let planned_rad = later_rad(Self::SEEN_TICKS) - now.position_rad;
+        if as_now_rad.abs() <= planned_rad.abs() {
+            return **now;
+        }
+        let acceleration_rad_s2 = 2.0 * (planned_rad - time_s * now.velocity_rad_s) / (time_s * time_s);
+        Setpoint { acceleration_rad_s2, ..**now }
+    }
+
     /// The shortest from where the joint is to half a hop ahead of where the plan then is, or as far towards it as a hop reaches.
-    fn hop(&self, estimate: &Estimate, (now, later_rad): &(&Setpoint, impl Fn(f32) -> f32)) -> Hop {
+    fn hop(&self, estimate: &Estimate, plan: &(&Setpoint, impl Fn(f32) -> f32)) -> Hop {
+        let now = self.as_planned(plan);
         const SHORTEST: u16 = 2;
         const LONGEST: u16 = 28;
         let half = 0.5 * self.hop_rad;
         let lead = within(Self::LEAD_S * now.velocity_rad_s, half);
         let mut half_ticks = SHORTEST;
         loop {
-            let ticks = f32::from(2 * half_ticks);
-            // a push that is soon over takes it nowhere, and one that is to come is the next hop's
-            let as_now_rad = after(now, ticks * TICK_S).position_rad - now.position_rad;
-            let planned_rad = later_rad(ticks) - now.position_rad;
-            let way_rad = if as_now_rad.abs() < planned_rad.abs() { as_now_rad } else { planned_rad };
-            let target = now.position_rad + way_rad + lead;
+            let target = after(&now, f32::from(2 * half_ticks) * TICK_S).position_rad + lead;
             let hop = Hop::new(estimate, target, half_ticks);
             if hop.most_rad_s2() <= self.acceleration_rad_s2 {
                 return hop;

@@ -281,6 +281,7 @@ impl<const SEGMENTS: usize> Player<SEGMENTS> {
     }
 
     /// Where the plan will have a joint in so many ticks of true time, if its clock goes on as it does, rad.
+    #[cold]
     pub(crate) fn later_rad(&self, joint: Joint, ticks: f32) -> f32 {
         let later = ticks * self.rate;
         let queued = (0..self.length).filter_map(|i| self.queue[(self.head + i) % SEGMENTS].as_ref());

@@ -43,7 +43,7 @@ pub(crate) struct Supervisor {
     settled_ticks: u32,
     /// Test moves since an encoder was last trusted.
     tests: u32,
-    /// It was stopped on its way, and rested since: an encoder at rest knows its angle to a count only, and who stopped it may have touched it.
+    /// The job was stopped on its way, and the head rested since: an encoder at rest knows its angle to a count only, and who stopped it may have touched it.
     rested: bool,
     /// For how long a dot is still wanted while it is disarmed.
     pointing_ticks: u32,

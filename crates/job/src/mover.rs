@@ -124,7 +124,7 @@ impl<'a> Mover<'a> {
         self.home_at(at_rad.map(|angle| (angle / count_rad).round() as i32))
     }
 
-    /// The same by what its encoders are to read.
+    /// Homes it by what its encoders are to read.
     fn home_at(&mut self, counts: PanTilt<i32>) -> Result<Place, Failure> {
         let count_rad = self.driving.rig.model.encoder.count_rad();
         self.ask(Request::Home(counts))?;
