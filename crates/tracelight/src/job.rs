@@ -17,7 +17,7 @@ use tracelight_report::{LogMeta, Summary};
 use tracelight_results::{self as results, Asked, Before, Records, Told, write};
 use tracelight_sim::ByEncoders;
 use tracelight_stroke::Vec2;
-use tracelight_task::{Failure, Stop, Task};
+use tracelight_task::{Failure, Task};
 
 use crate::cli::by_hand::FrameName;
 use crate::cli::driving::stand_by;
@@ -25,7 +25,6 @@ use crate::cli::eyes::SimulatedEyeName;
 use crate::cli::request::TraceArgs;
 use crate::named;
 use crate::settings;
-use tracelight_operator::Bar;
 
 /// How a job ended.
 pub(crate) struct Outcome {
@@ -37,13 +36,13 @@ pub(crate) struct Outcome {
 }
 
 /// Picture → strokes → target → order → plan → run → results.
-pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
-    run(args, None, stop)
+pub(crate) fn trace(args: &TraceArgs, task: Task<'_>) -> Result<Outcome, Failure> {
+    run(args, None, task)
 }
 
 /// The rest of a run that ended on its way, as a run of its own.
-pub(crate) fn resume(args: &TraceArgs, earlier: &Earlier<'_>, stop: &Stop) -> Result<Outcome, Failure> {
-    run(args, Some(earlier), stop)
+pub(crate) fn resume(args: &TraceArgs, earlier: &Earlier<'_>, task: Task<'_>) -> Result<Outcome, Failure> {
+    run(args, Some(earlier), task)
 }
 
 /// A run that ended on its way.
@@ -56,9 +55,7 @@ pub(crate) struct Earlier<'a> {
     pub(crate) beside: &'a Path,
 }
 
-fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<Outcome, Failure> {
-    let bar = Bar::new(args.voice.quiet);
-    let task = Task { progress: &bar, stop };
+fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, task: Task<'_>) -> Result<Outcome, Failure> {
     args.check_camera()?;
     args.check_keys()?;
     let (prepared, asked, at) = begun(args, earlier, task)?;
@@ -70,7 +67,7 @@ fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<O
         }
     };
     // from here on the laser may be lit, and results belong together
-    let _kept = stop.keep();
+    let _kept = task.stop.keep();
     let folder = results::open(&dir, &args.driving.rig)?;
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
     let name = shown(args.name());

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use clap::Args;
-use tracelight_task::{Failure, Stop};
+use tracelight_task::{Failure, Stop, Task};
 
 /// What every command has.
 #[derive(Args, Clone, Copy, Debug, Default)]
@@ -37,6 +37,9 @@ impl Answer {
 
 /// Does what a command line says, in this process, and returns what would be printed.
 pub(crate) type Performs = fn(&[&str], &Stop) -> Result<Answer, Failure>;
+
+/// The same for somebody who shows by himself how far it is.
+pub(crate) type PerformsWith = fn(&[String], Task<'_>) -> Result<Answer, Failure>;
 
 /// To standard output; a reader that has left is no error.
 ///

@@ -9,6 +9,14 @@ pub(crate) fn json(failure: &Failure) -> String {
     shown(&failure.json(&help))
 }
 
+/// A command line that the parser refused, as a failure: what it says first.
+pub(crate) fn refused(error: &clap::Error) -> Failure {
+    let text = error.render().to_string();
+    let first = text.split("\n\n").next().unwrap_or_default();
+    let words: Vec<&str> = first.trim_start_matches("error: ").split_whitespace().collect();
+    Failure::usage("usage", words.join(" "))
+}
+
 /// A command line that the parser refused: what it says first is the message, the rest and what is known beside it is what to do.
 pub(crate) fn refused_json(error: &clap::Error, more: &[String]) -> String {
     let text = error.render().to_string();

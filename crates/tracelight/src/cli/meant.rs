@@ -11,9 +11,6 @@ const ENDINGS: [&str; 20] = [
     "json", "csv", "heic", "heif", "pdf", "dwg",
 ];
 
-/// Commands of which people have heard, and that are not there yet.
-const COMING: [&str; 1] = ["studio"];
-
 /// A command line with its command put in where it begins with a picture; `sim:PICTURE` is a camera that sees one. The first argument is the
 /// program, as everywhere.
 ///
@@ -109,8 +106,6 @@ fn neither(text: &str, program: &clap::Command) -> Failure {
         format!(
             "{text} is a folder; the strokes of its pictures: tracelight strokes {text} -o out/; to draw one of them: tracelight trace FILE"
         )
-    } else if COMING.contains(&text) {
-        format!("{text} is not built yet; {trace}")
     } else {
         let meant = nearest(text, program.get_subcommands().map(clap::Command::get_name));
         let hint = meant.map_or_else(String::new, |name| format!(" did you mean tracelight {name}?"));

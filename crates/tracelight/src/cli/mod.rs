@@ -33,6 +33,7 @@ mod rigs;
 mod runs;
 pub(crate) mod shapes;
 mod strokes;
+mod studio;
 mod terminal;
 mod trace;
 pub(crate) mod tracing;
@@ -44,7 +45,8 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracelight_files as files;
-use tracelight_task::{Failure, Status, Stop};
+use tracelight_operator::Bar;
+use tracelight_task::{Failure, Status, Stop, Task};
 
 use self::answer::{Answer, Voice, print};
 use self::terminal::Terminal;
@@ -76,6 +78,7 @@ enum Command {
     Home(moving::HomeArgs),
     Jog(moving::JogArgs),
     Park(moving::ParkArgs),
+    Studio(studio::StudioArgs),
     Calibrate(calibrate::CalibrateArgs),
     Lab(lab::LabArgs),
     Doctor(doctor::DoctorArgs),
@@ -127,10 +130,11 @@ fn offered(arguments: &[OsString]) -> Option<ExitCode> {
 
 fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
     match command {
-        Command::Trace(args) => (args.voice, trace::run(args, stop)),
+        Command::Trace(args) => (args.voice, shown(args.voice, stop, |task| trace::run(args, task))),
         Command::Strokes(args) => (args.voice, strokes::run(args, stop)),
-        Command::Plan(args) => (args.voice, plan::run(args, stop)),
-        Command::Point(args) => (args.voice, point::run(args, traced, stop)),
+        Command::Plan(args) => (args.voice, shown(args.voice, stop, |task| plan::run(args, task))),
+        Command::Point(args) => (args.voice, shown(args.voice, stop, |task| point::run(args, traced, task))),
+        Command::Studio(args) => (args.voice, studio::run(args, done_for, stop)),
         Command::Home(args) => (args.head.voice, moving::home(args, stop)),
         Command::Jog(args) => (args.head.voice, moving::jog(args, stop)),
         Command::Park(args) => (args.head.voice, moving::park(args, stop)),
@@ -139,12 +143,34 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Doctor(args) => (args.voice, doctor::run(args, stop)),
         Command::Rig(args) => (args.voice(), rig::run(args, stop)),
         Command::Rigs(args) => (args.voice, rigs::run(args)),
-        Command::Resume(args) => (args.voice, resume::run(args, traced, stop)),
+        Command::Resume(args) => {
+            (args.voice, shown(args.voice, stop, |task| resume::run(args, traced, task)))
+        }
         Command::Runs(args) => (args.voice, runs::run(args)),
         Command::Recover(args) => (args.voice, recover::run(args)),
         Command::Explain(args) => (args.voice, explain::run(args)),
         Command::Completions(args) => (args.voice, completions::run(args)),
         Command::Man(args) => (args.voice, man::run(args, Cli::command())),
+    }
+}
+
+/// Work whose progress a terminal shows.
+fn shown<T>(voice: Voice, stop: &Stop, work: impl FnOnce(Task<'_>) -> T) -> T {
+    let bar = Bar::new(voice.quiet);
+    work(Task { progress: &bar, stop })
+}
+
+/// Does what a command line says for somebody who shows its progress: commands that a page may need, with `--json`.
+fn done_for(arguments: &[String], task: Task<'_>) -> Result<Answer, Failure> {
+    let all = std::iter::once("tracelight").chain(arguments.iter().map(String::as_str));
+    // what is said first is what is wrong; the rest is for a terminal
+    let refused = |e: clap::Error| failing::refused(&e);
+    match Cli::try_parse_from(all).map_err(refused)?.command.typed(arguments.to_vec()) {
+        Command::Trace(args) => trace::run(&args, task),
+        Command::Plan(args) => plan::run(&args, task),
+        Command::Runs(args) => runs::run(&args),
+        Command::Explain(args) => explain::run(&args),
+        _ => Err(Failure::usage("usage", "the studio does not do this command")),
     }
 }
 

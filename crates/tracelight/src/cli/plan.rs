@@ -8,7 +8,7 @@ use tracelight_report::{
 };
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::Effort;
-use tracelight_task::{Failure, Stop, Task, counted};
+use tracelight_task::{Failure, Task, counted};
 use tracelight_trajectory::{LitSpeed, Plan};
 
 use crate::cli::answer::{Answer, Voice};
@@ -22,7 +22,6 @@ use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::wall::WallArgs;
 use crate::named;
-use tracelight_operator::Bar;
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]
@@ -177,9 +176,7 @@ fn picture(text: &str) -> Result<String, String> {
     ends_in(text, "svg", "a preview is an SVG: end it in .svg")
 }
 
-pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let bar = Bar::new(args.voice.quiet);
-    let task = Task { progress: &bar, stop };
+pub(crate) fn run(args: &PlanArgs, task: Task<'_>) -> Result<Answer, Failure> {
     check_out(args)?;
     let mut driving = args.driving.resolve()?;
     let known = args.head.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
@@ -197,7 +194,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let (sketch, vision_ms) = task.timed(|| sketch(name, source, &args.tracing.tracing(), &placing));
     let sketch = sketch?;
     let placed = place(&sketch, &placing)?;
-    stop.check()?;
+    task.check()?;
     task.stage("plan", 1);
     let (schedule, plan_ms) = task.timed(|| schedule(&placed, &driving));
     let schedule = schedule?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use tracelight_pipeline::PointMark;
-use tracelight_task::{Failure, Stop};
+use tracelight_task::{Failure, Task};
 use tracelight_units::{Offset, Speed};
 
 use crate::cli::answer::{Answer, Voice};
@@ -65,7 +65,7 @@ pub(crate) struct PointArgs {
 pub(crate) fn run(
     args: &PointArgs,
     traced: impl Fn(&[String]) -> Result<TraceArgs, Failure>,
-    stop: &Stop,
+    task: Task<'_>,
 ) -> Result<Answer, Failure> {
     let mut asked = traced(&["trace", "--points", "point"].map(str::to_owned))?;
     asked.at.clone_from(&args.places);
@@ -78,5 +78,5 @@ pub(crate) fn run(
     (asked.dry_run, asked.voice) = (args.dry_run, args.voice);
     asked.out.clone_from(&args.out);
     asked.typed.clone_from(&args.typed);
-    trace::run(&asked, stop)
+    trace::run(&asked, task)
 }

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use tracelight_files::ResultFolder;
 use tracelight_results::{Before, Kept, NOTHING_LEFT, check_newest, read};
-use tracelight_task::{Failure, Stop};
+use tracelight_task::{Failure, Task};
 
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::by_hand::ByHandArgs;
@@ -36,7 +36,7 @@ pub(crate) struct ResumeArgs {
 /// Reads a command that was given earlier.
 type Traced = fn(&[String]) -> Result<TraceArgs, Failure>;
 
-pub(crate) fn run(args: &ResumeArgs, traced: Traced, stop: &Stop) -> Result<Answer, Failure> {
+pub(crate) fn run(args: &ResumeArgs, traced: Traced, task: Task<'_>) -> Result<Answer, Failure> {
     let dir = std::fs::canonicalize(&args.dir).unwrap_or_else(|_| args.dir.clone());
     let Kept { asked, progress } = read(&args.dir)?;
     // nobody else goes on with it meanwhile
@@ -72,7 +72,7 @@ pub(crate) fn run(args: &ResumeArgs, traced: Traced, stop: &Stop) -> Result<Answ
     match job::resume(
         &request,
         &Earlier { asked: &asked, runs: earlier, beside: &ResultFolder::unnumbered(&dir) },
-        stop,
+        task,
     ) {
         Err(none) if none.code == NOTHING_LEFT => {
             let json = serde_json::json!({ "folder": args.dir, "finished": true });

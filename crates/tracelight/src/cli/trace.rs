@@ -1,11 +1,11 @@
-use tracelight_task::{Failure, Stop};
+use tracelight_task::{Failure, Task};
 
 use crate::cli::answer::Answer;
 use crate::cli::request::TraceArgs;
 use crate::job::{self, Outcome};
 
-pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
-    answered(args, job::trace(args, stop)?)
+pub(crate) fn run(args: &TraceArgs, task: Task<'_>) -> Result<Answer, Failure> {
+    answered(args, job::trace(args, task)?)
 }
 
 /// What a run that is over is answered with.
@@ -29,7 +29,7 @@ fn summary_event(json: &str) -> String {
 }
 
 /// Hands a page to whatever shows pages here. Failing to is not worth an error: the path is printed.
-fn open(page: &std::path::Path) {
+pub(crate) fn open(page: &std::path::Path) {
     let opener = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
     let quiet = std::process::Stdio::null;
     drop(std::process::Command::new(opener).arg(page).stdout(quiet()).stderr(quiet()).spawn());

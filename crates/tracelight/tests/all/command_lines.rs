@@ -23,7 +23,6 @@ fn what_is_no_command_is_answered_with_what_to_type() {
         (&["stroke"], &["tracelight strokes?"]),
         (&["banana"], &["banana is no command, and no file", "tracelight trace FILE", "tracelight --help"]),
         (&["examples"], &["examples is a folder", "tracelight strokes examples -o out/"]),
-        (&["studio"], &["studio is not built yet"]),
         (&["help", "trcae"], &["did you mean trace?"]),
         (&["help", "lab", "boed"], &["did you mean bode?"]),
         (&["no-such.png"], &["cannot read no-such.png"]),

@@ -16,6 +16,7 @@ const LINES: &[&str] = &[
     "jog 2deg,1deg --rig @/board",
     "home --rig @/board",
     "park --rig @/board",
+    "studio --port 0 --no-open --for 0.3s --folder @/studio",
     "rigs",
     "rigs show report",
     "explain",

@@ -53,6 +53,7 @@ mod several;
 mod simulate;
 mod sizes;
 mod standing;
+mod studio;
 mod support;
 mod where_on_wall;
 mod whole_rig;

@@ -14,7 +14,10 @@ use crate::house_rules::sources;
 use crate::support::{folder, root};
 
 /// Lines that cannot run here, exactly as they stand, and why.
-const NOT_RUN: [(&str, &str); 15] = [
+const NOT_RUN: [(&str, &str); 18] = [
+    ("tracelight studio", "opens a browser"),
+    ("tracelight studio examples/sign.svg --folder out/studio --no-open", "waits for Ctrl-C"),
+    ("tracelight home --by-stops --rig /dev/ttyACM0:my-head.toml", "a real board"),
     ("cargo test --workspace", "it runs this test"),
     ("cargo run --release -p tracelight-job --example picture_to_figures", "cargo"),
     ("tracelight doctor", "looks at the cameras that are plugged in"),

@@ -17,7 +17,7 @@ const NAMES: &[Row] = &[
     ("banana", 2, &["no file of that name", "tracelight trace FILE"]),
     ("examples", 2, &["examples is a folder", "tracelight strokes examples -o out/"]),
     ("nosuch.png", 2, &["cannot read nosuch.png", "check the name"]),
-    ("studio", 2, &["not built yet", "tracelight trace FILE"]),
+    ("studio --port 70000", 2, &["give a whole number from 0 to 65535"]),
     ("jog 5deg,0deg", 2, &["--rig", "example: tracelight jog"]),
     ("jog 5 --rig /dev/ttyNONE", 2, &["is no way to go", "10cm,5cm"]),
     ("home --rig report", 2, &["rig serve --pty"]),

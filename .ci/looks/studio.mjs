@@ -1,0 +1,101 @@
+// A browser uses the studio: node studio.mjs ADDRESS, of one that was just opened on an empty folder.
+// The first minute by one click, dragging, typing, undoing, a wrong value, a picture from a file, stopping from within a field; at three widths, on each ground, nothing
+// axe finds wrong, nothing wider than the screen, no error of a script, nothing asked of anybody else.
+import { readFileSync } from 'node:fs'
+import { createRequire } from 'node:module'
+import { chromium } from 'playwright-core'
+
+const address = process.argv[2], picture = process.argv[3]
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8')
+const complaints = []
+const check = (holds, what) => holds || complaints.push(what)
+
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox'] })
+
+const opened = async (width, height, options = {}) => {
+  const context = await browser.newContext({ viewport: { width, height }, bypassCSP: true, ...options })
+  const page = await context.newPage()
+  page.on('pageerror', error => complaints.push(`${width} px: ${error.message}`))
+  page.on('request', request => /^(data|blob):/.test(request.url()) || request.url().startsWith(address) || complaints.push(`asks for ${request.url()}`))
+  await page.goto(address)
+  await page.waitForFunction(() => document.getElementById('count').textContent !== '–')
+  return page
+}
+const value = (page, name) => page.inputValue(`[name=${name}]`)
+const until = async (page, what, holds) => page.waitForFunction(holds, null, { timeout: 10000 }).catch(() => complaints.push(what))
+
+const firstMinute = async () => {
+  const page = await opened(1280, 800), began = Date.now()
+  await page.click('#trace')
+  await page.waitForSelector('#result:not([hidden])')
+  const took = (Date.now() - began) / 1000
+  check(took <= 10, `the house took ${took} s`)
+  check(/mm off at most/.test(await page.textContent('#result')), 'the result tells no error')
+  const report = await page.request.get(new URL(await page.getAttribute('#result a', 'href'), address).href)
+  check(report.ok() && /sandbox/.test(report.headers()['content-security-policy']), 'no report, or one that may do anything')
+  await page.click('#to-runs')
+  await until(page, 'the run is not listed', () => document.querySelectorAll('#run-list li').length === 1)
+  await page.close()
+  return took
+}
+
+const place = async () => {
+  const page = await opened(1280, 800)
+  const box = await page.locator('#wall').boundingBox()
+  const [x, y] = [box.x + box.width / 2 + 13, box.y + box.height / 2 + 13]
+  await page.mouse.move(x, y)
+  await page.mouse.down()
+  await page.mouse.move(x + 80, y - 40, { steps: 8 })
+  check(/mm,/.test(await value(page, 'offset')), 'what is dragged is not told while it is')
+  await page.mouse.up()
+  await until(page, 'what was dragged is not planned', () => /--offset=/.test(document.getElementById('command').textContent))
+  await page.fill('[name=rotate]', '20deg')
+  await page.press('[name=rotate]', 'Enter')
+  await until(page, 'what was turned is not planned', () => /--rotate=20deg/.test(document.getElementById('command').textContent))
+  await page.fill('[name=width]', '3x')
+  await page.press('[name=width]', 'Tab')
+  await until(page, 'a wrong width is not told', () => /use one of m, mm, cm/.test(document.getElementById('problem').textContent))
+  check((await page.getAttribute('[name=width]', 'aria-invalid')) === 'true', 'the field with the wrong value is not marked')
+  await page.focus('#wall')
+  for (let n = 0; n < 3; n++) await page.keyboard.press('Control+z')
+  check((await value(page, 'offset')) === '' && (await value(page, 'width')) === '', 'it cannot be undone')
+  await until(page, 'the wrong value is still told', () => document.getElementById('problem').hidden)
+  await page.keyboard.press('Shift+ArrowRight')
+  check((await value(page, 'offset')) === '10mm,0mm', 'arrows do not move it')
+  await page.setInputFiles('#file', picture)
+  await until(page, 'a picture from a file is not planned', () => /sheet/.test(document.getElementById('command').textContent))
+  // stopping asks for no focus and no second key
+  await page.focus('[name=width]')
+  const stopped = page.waitForRequest(request => request.url().endsWith('/api/v1/stop'))
+  await page.keyboard.press('Escape')
+  await Promise.race([stopped, new Promise((_, late) => setTimeout(late, 500))]).catch(() => complaints.push('Esc in a field does not stop'))
+  await page.close()
+}
+
+const looks = async () => {
+  for (const [width, height] of [[1280, 800], [820, 1100], [390, 844]]) {
+    for (const theme of ['light', 'dark', 'room']) {
+      const page = await opened(width, height)
+      await page.evaluate(name => localStorage.setItem('theme', name), theme)
+      for (const view of ['', '#runs']) {
+        await page.goto(address + view)
+        await page.reload()
+        await page.waitForTimeout(400)
+        await page.evaluate(axe)
+        const { violations } = await page.evaluate(() => globalThis.axe.run())
+        for (const v of violations) complaints.push(`${width} px, ${theme}, ${view || 'place'}: ${v.id}, ${v.nodes.length} times: ${v.nodes[0].html.slice(0, 120)}`)
+        const wide = await page.evaluate(() => document.documentElement.scrollWidth)
+        check(wide <= width, `${width} px, ${theme}: ${wide} px wide`)
+      }
+      await page.context().close()
+    }
+  }
+}
+
+const took = await firstMinute()
+await place()
+await looks()
+await browser.close()
+for (const complaint of complaints) console.error(complaint)
+if (complaints.length) process.exit(1)
+console.log(`the studio was used: the house is traced ${took} s after a click`)

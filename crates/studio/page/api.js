@@ -1,0 +1,74 @@
+// @ts-check
+/** What the server is asked. */
+
+/**
+ * @typedef {{ code: string, message: string, help?: string }} Failure what went wrong, as the program says it
+ * @typedef {{ id: string, example: boolean, shows: boolean }} Picture
+ * @typedef {Record<string, string | boolean>} Flags flags of the command line, with underscores
+ * @typedef {{ number: number, length_m: number, lit_from_s: number, lit_to_s: number }} Stroke
+ * @typedef {{ target: { width_m: number, height_m: number }, strokes: { count: number, length_m: number }, plan: { duration_s: number },
+ *   head: { spot_mm: number, best_distance_m: number, distance_m: number }, sequence: Stroke[] }} PlanFigures
+ * @typedef {{ id: number, command: string, plan: PlanFigures, remarks: string[], points: string }} Plan
+ * @typedef {{ id: number, run: string, stage: string, done: number, of: number, remarks: string[], over: boolean, answer: any, failure: Failure | null }} Job
+ */
+
+/** A refusal, with what the program says about it. */
+export class Refusal extends Error {
+  /** @param {Failure} failure @param {number} status */
+  constructor(failure, status) {
+    super(failure.message)
+    this.failure = failure
+    this.status = status
+  }
+}
+
+/** @param {Response} response */
+async function checked(response) {
+  if (response.ok) return response
+  const told = await response.json().catch(() => null)
+  const failure = told?.error ?? { code: 'internal', message: `the server answers ${response.status}` }
+  throw new Refusal(failure, response.status)
+}
+
+/** @param {string} path @param {RequestInit} [init] @returns {Promise<any>} */
+async function json(path, init) {
+  const response = await fetch(`/api/v1${path}`, init).catch(() => {
+    throw new Refusal({ code: 'gone', message: 'The studio’s server does not answer: is it still running in its terminal?' }, 0)
+  })
+  return (await checked(response)).json()
+}
+
+/** @param {string} path @param {unknown} body @param {AbortSignal} [signal] */
+const post = (path, body, signal) => json(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body), signal })
+
+export const about = () => json('/about')
+/** @returns {Promise<Picture[]>} */
+export const pictures = async () => (await json('/pictures')).pictures
+/** @param {File} file @returns {Promise<string>} */
+export const add = async (file) => (await json(`/pictures?name=${encodeURIComponent(file.name || 'pasted.png')}`, { method: 'POST', body: file })).id
+/** @param {string} id */
+export const pictureUrl = (id) => `/api/v1/pictures/${encodeURIComponent(id)}`
+/** @param {{ page: string, picture: string, flags: Flags }} asked @returns {Promise<Plan>} */
+export const plan = (asked) => post('/plans', asked)
+/** @param {{ picture: string, flags: Flags }} asked @returns {Promise<Job>} */
+export const trace = (asked) => post('/jobs', asked)
+/** @returns {Promise<Job | null>} */
+export const job = async () => (await json('/jobs/current')).job
+export const stop = () => post('/stop', {})
+export const runs = async () => (await json('/runs')).runs
+/** @param {string} run @param {string} name */
+export const runFile = (run, name) => `/api/v1/runs/${encodeURIComponent(run)}/files/${name}`
+
+/**
+ * A plan's points, a value a tick in each column.
+ * @typedef {{ x: Float32Array, y: Float32Array, lit: Float32Array, stroke: Float32Array, speed: Float32Array, rows: number, ticksARow: number }} Points
+ * @param {string} path @returns {Promise<Points>}
+ */
+export async function points(path) {
+  const buffer = await (await checked(await fetch(path))).arrayBuffer()
+  const head = new DataView(buffer)
+  const [columns, rows, ticksARow] = [head.getUint16(2, true), head.getUint32(8, true), head.getUint32(12, true)]
+  const column = (/** @type {number} */ n) => new Float32Array(buffer, 16 + 4 * n * rows, rows)
+  if (head.getUint8(0) !== 5 || columns < 5) throw new Refusal({ code: 'internal', message: 'the plan’s points are of a kind that this page does not know' }, 0)
+  return { x: column(0), y: column(1), lit: column(2), stroke: column(3), speed: column(4), rows, ticksARow }
+}

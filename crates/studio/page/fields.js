@@ -1,0 +1,107 @@
+// @ts-check
+/** The form: a field a flag, with the flag's name and the values of the command line. */
+
+/**
+ * @typedef {import('./api.js').Flags} Flags
+ * @typedef {{ flag: string, label: string, hint?: string, choices?: [string, string][], check?: boolean }} Field
+ */
+
+/** @type {{ title: string, open: boolean, fields: Field[] }[]} */
+const GROUPS = [
+  {
+    title: 'Size and place',
+    open: true,
+    fields: [
+      { flag: 'width', label: 'Width', hint: '24in, 60cm, 3m' },
+      { flag: 'height', label: 'or height', hint: 'follows' },
+      { flag: 'offset', label: 'Right, up', hint: '10cm,-5cm' },
+      { flag: 'rotate', label: 'Turn', hint: '15deg' },
+      { flag: 'distance', label: 'Head’s distance', hint: '3ft' },
+      { flag: 'flip', label: 'Mirror', check: true },
+    ],
+  },
+  {
+    title: 'Picture',
+    open: false,
+    fields: [
+      { flag: 'mode', label: 'Lines', choices: [['', 'by their width'], ['centreline', 'middle of every line'], ['outline', 'edge of all ink']] },
+      { flag: 'threshold', label: 'Least contrast', hint: 'auto, 30' },
+      { flag: 'despeckle', label: 'Smallest speck', hint: 'auto, 20' },
+      { flag: 'min_length', label: 'Shortest stroke', hint: '8px, 5mm' },
+      { flag: 'unit', label: 'Unit of a DXF', choices: [['', 'as the file says'], ['mm', 'mm'], ['cm', 'cm'], ['m', 'm'], ['in', 'in'], ['ft', 'ft']] },
+    ],
+  },
+  {
+    title: 'Time and head',
+    open: false,
+    fields: [
+      { flag: 'speed', label: 'Speed of the spot', hint: '1ft/s' },
+      { flag: 'lit_speed', label: 'At corners', choices: [['', 'fastest'], ['exact', 'one constant speed'], ['stops', 'stop at each']] },
+      { flag: 'order', label: 'Order', choices: [['', 'least time'], ['layer', 'layer by layer'], ['reading', 'row by row']] },
+      { flag: 'rig', label: 'Head', choices: [['', 'report: the 2006 report’s'], ['worn', 'worn: with play and age'], ['stepper', 'stepper: two stepper motors'], ['servo', 'servo: hobby servos']] },
+    ],
+  },
+]
+
+export class Fields {
+  /** @param {HTMLFormElement} form @param {(flags: Flags) => void} changed */
+  constructor(form, changed) {
+    /** @type {Map<string, HTMLInputElement | HTMLSelectElement>} */
+    this.inputs = new Map()
+    for (const group of GROUPS) {
+      const part = document.createElement('details')
+      part.open = group.open
+      const title = document.createElement('summary')
+      title.textContent = group.title
+      part.append(title, ...group.fields.map((field) => this.#row(field, changed)))
+      form.append(part)
+    }
+    form.addEventListener('submit', (event) => event.preventDefault())
+  }
+
+  /** @param {Field} field @param {(flags: Flags) => void} changed */
+  #row(field, changed) {
+    const label = document.createElement('label')
+    label.className = field.check ? 'row check' : 'row'
+    const text = document.createElement('span')
+    text.textContent = field.label
+    const input = field.choices ? document.createElement('select') : document.createElement('input')
+    for (const [value, words] of field.choices ?? []) input.append(new Option(words, value))
+    if (input instanceof HTMLInputElement) {
+      input.type = field.check ? 'checkbox' : 'text'
+      input.placeholder = field.hint ?? ''
+      input.spellcheck = false
+      if (!field.check) input.inputMode = 'text'
+    }
+    input.name = field.flag
+    input.addEventListener('change', () => {
+      const value = input instanceof HTMLInputElement && field.check ? input.checked : input.value.trim()
+      // one of both says the other
+      const other = /** @type {Record<string, Flags>} */ ({ width: { height: '' }, height: { width: '' } })
+      changed({ ...(value ? other[field.flag] : {}), [field.flag]: value })
+    })
+    label.append(text, input)
+    this.inputs.set(field.flag, input)
+    return label
+  }
+
+  /** Shows what is asked for. @param {Flags} flags */
+  show(flags) {
+    for (const [flag, input] of this.inputs) {
+      const value = flags[flag] ?? ''
+      if (input instanceof HTMLInputElement && input.type === 'checkbox') input.checked = value === true
+      else if (document.activeElement !== input || input.value.trim() !== value) input.value = String(value)
+    }
+  }
+
+  /** Marks the field that a message is about; none of another. @param {string} message */
+  blame(message) {
+    for (const [flag, input] of this.inputs) {
+      const is = message.includes(`--${flag.replaceAll('_', '-')} `) || message.includes(`--${flag.replaceAll('_', '-')}=`)
+      if (is) {
+        input.setAttribute('aria-invalid', 'true')
+        input.closest('details')?.setAttribute('open', '')
+      } else input.removeAttribute('aria-invalid')
+    }
+  }
+}

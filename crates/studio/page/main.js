@@ -1,0 +1,292 @@
+// @ts-check
+/** The page: what is asked of whom, in which order. */
+
+import * as api from './api.js'
+import { Fields } from './fields.js'
+import { element, follow, showResult, showRuns } from './runs.js'
+import { Store } from './store.js'
+import { Timeline } from './timeline.js'
+import { Wall } from './wall.js'
+import { degrees, length, offset, plain, time, typed } from './words.js'
+
+/** How long a wish rests before it is planned, ms. */
+const REST = 150
+/** A way by an arrow key, m. */
+const NUDGE_M = 1e-3
+/** In how many seconds a drawing is played while it is traced. */
+const PLAYED_S = 6
+const THEMES = /** @type {const} */ ([['auto', '◐ Auto'], ['light', '○ Light'], ['dark', '● Dark'], ['room', '◍ Dark room']])
+
+/** @template {HTMLElement} T @param {string} id @returns {T} */
+const by = (id) => /** @type {T} */ (document.getElementById(id))
+const page = crypto.randomUUID()
+const chosen = new URLSearchParams(location.hash.slice(1)).get('picture')
+const store = new Store({ picture: chosen ?? 'house.png', flags: {} })
+let folder = ''
+/** @type {api.Plan | null} */
+let plan = null
+let tracing = false
+
+const wall = new Wall(by('wall'), (box, done) => {
+  const flags = placed(box)
+  if (done) store.flags(flags)
+  else fields.show({ ...store.asked.flags, ...flags })
+})
+const timeline = new Timeline({ range: by('time'), play: by('play'), clock: by('clock'), rate: by('rate') }, (row) => wall.at(row))
+const fields = new Fields(by('fields'), (flags) => store.flags(flags))
+
+/** Where a box lies, as flags: what did not change stays as it was typed. @param {import('./wall.js').Box} box @returns {api.Flags} */
+function placed(box) {
+  const is = boxOf(store.asked.flags)
+  /** @type {api.Flags} */
+  const flags = {}
+  if (Math.hypot(box.x - is.x, box.y - is.y) > 5e-5) flags.offset = `${typed(box.x)},${typed(box.y)}`
+  if (Math.abs(box.width - is.width) > 5e-5) Object.assign(flags, { width: typed(box.width), height: '' })
+  if (Math.abs(box.turn - is.turn) > 1e-4) flags.rotate = `${plain((box.turn * 180) / Math.PI, 1)}deg`
+  return flags
+}
+
+/** Where the drawing is to be by its flags, as far as the page can tell. @param {api.Flags} flags @returns {import('./wall.js').Box} */
+function boxOf(flags) {
+  const [x, y] = offset(String(flags.offset ?? '')) ?? [0, 0]
+  const turn = ((degrees(String(flags.rotate ?? '')) ?? 0) * Math.PI) / 180
+  const { width_m: width, height_m: height } = plan?.plan.target ?? { width_m: 0.6096, height_m: 0.4572 }
+  return { x, y, turn, width, height }
+}
+
+let asked = 0
+let timer = 0
+
+/** Plans what is asked for, once it rests. @param {number} [rest] */
+function planSoon(rest = REST) {
+  clearTimeout(timer)
+  const number = ++asked
+  by('duration').dataset.old = ''
+  timer = window.setTimeout(async () => {
+    try {
+      const made = await api.plan({ page, ...store.asked })
+      const points = await api.points(made.points)
+      if (number === asked) show(made, points)
+    } catch (error) {
+      if (number === asked) problem(error)
+    }
+  }, rest)
+}
+
+/** @param {api.Plan} made @param {api.Points} points */
+function show(made, points) {
+  problem(null)
+  plan = made
+  wall.show(points, boxOf(store.asked.flags))
+  timeline.of(points.rows, made.plan.plan.duration_s)
+  const { target, strokes, plan: timed, head } = made.plan
+  by('size').textContent = `${length(target.width_m)} × ${length(target.height_m)}`
+  by('count').textContent = String(strokes.count)
+  by('length').textContent = length(strokes.length_m)
+  by('duration').textContent = time(timed.duration_s)
+  delete by('duration').dataset.old
+  by('spot').textContent = `${plain(head.spot_mm, 1)} mm wide`
+  by('command').textContent = made.command
+  const remarks = by('remarks')
+  remarks.hidden = made.remarks.length === 0
+  remarks.querySelector('ul')?.replaceChildren(...made.remarks.map((remark) => element('li', { text: remark })))
+  by('strokes').replaceChildren(...made.plan.sequence.slice(0, 500).map(row))
+}
+
+/** @param {api.Stroke} stroke */
+function row(stroke) {
+  const cells = [String(stroke.number), length(stroke.length_m), time(stroke.lit_from_s), time(stroke.lit_to_s - stroke.lit_from_s)]
+  return element('tr', {}, ...cells.map((text) => element('td', { text })))
+}
+
+/** Tells what went wrong, where it arises; null for nothing. @param {unknown} error */
+function problem(error) {
+  const place = by('problem')
+  place.hidden = error === null
+  place.replaceChildren()
+  if (error === null) return fields.blame('')
+  const failure = error instanceof api.Refusal ? error.failure : { code: 'internal', message: String(error) }
+  place.append(element('strong', { text: failure.message }))
+  // of a wrong value there is no more to be told than its message does
+  if (failure.help && failure.code !== 'usage') place.append(element('p', { text: failure.help }))
+  fields.blame(failure.message)
+}
+
+/** Traces what is shown. */
+async function trace() {
+  if (tracing) return
+  setTracing(true)
+  by('result').hidden = true
+  problem(null)
+  try {
+    await api.trace(store.asked)
+    if (plan) {
+      timeline.rest()
+      timeline.play(Math.max(1, plan.plan.plan.duration_s / PLAYED_S))
+    }
+    const ended = await follow((job) => lamp(`◔ ${words(job)}`))
+    if (ended) showResult(by('result'), ended)
+    by('result').scrollIntoView({ block: 'nearest' })
+  } catch (error) {
+    problem(error)
+  } finally {
+    setTracing(false)
+  }
+}
+
+/** @param {api.Job} job */
+function words(job) {
+  const stage = /** @type {Record<string, string>} */ ({ strokes: 'Finding strokes', plan: 'Planning', run: 'Tracing', report: 'Writing the report' })[job.stage] ?? 'Tracing'
+  return job.of > 1 ? `${stage} ${Math.round((100 * job.done) / job.of)} %` : stage
+}
+
+/** @param {boolean} is */
+function setTracing(is) {
+  tracing = is
+  by('trace').toggleAttribute('disabled', is)
+  if (!is) lamp('● Dark')
+}
+
+/** @param {string} text */
+function lamp(text) {
+  by('lamp').textContent = text
+}
+
+async function stop() {
+  by('stop').classList.add('pressed')
+  try {
+    await api.stop()
+  } catch (error) {
+    problem(error)
+  }
+  setTimeout(() => by('stop').classList.remove('pressed'), 300)
+}
+
+/** Takes a file in. @param {File | null | undefined} file */
+async function take(file) {
+  if (!file) return
+  try {
+    const picture = await api.add(file)
+    await list()
+    choose(picture)
+  } catch (error) {
+    problem(error)
+  }
+}
+
+/** @param {string} picture */
+function choose(picture) {
+  by('result').hidden = true
+  wall.first = true
+  // what was asked of one picture is not asked of another, but where the head stands
+  const { distance, rig } = store.asked.flags
+  store.set({ picture, flags: { ...(distance ? { distance } : {}), ...(rig ? { rig } : {}) } })
+}
+
+async function list() {
+  const all = await api.pictures()
+  by('pictures').replaceChildren(
+    ...all.slice(0, 40).map((picture) => {
+      const button = element('button', { type: 'button', class: 'picture', title: picture.id, 'aria-pressed': String(picture.id === store.asked.picture) })
+      button.append(picture.shows ? element('img', { src: api.pictureUrl(picture.id), alt: '', loading: 'lazy' }) : element('span', { class: 'kind', text: picture.id.split('.').pop() }), element('span', { text: picture.id }))
+      button.addEventListener('click', () => choose(picture.id))
+      return element('li', {}, button)
+    }),
+  )
+}
+
+/** Shows the view that the address names. */
+function view() {
+  const runs = location.hash === '#runs'
+  by('place').hidden = runs
+  by('runs').hidden = !runs
+  by('to-place').toggleAttribute('aria-current', !runs)
+  by('to-runs').toggleAttribute('aria-current', runs)
+  if (runs) showRuns(by('run-list'), by('runs-where'), folder).catch(problem)
+}
+
+/** @param {KeyboardEvent} event */
+function key(event) {
+  if (event.key === 'Escape') return void stop()
+  const target = /** @type {HTMLElement} */ (event.target)
+  const types = target.closest('input[type=text], select, textarea') !== null
+  const letter = event.key.toLowerCase()
+  if ((event.ctrlKey || event.metaKey) && !types && (letter === 'z' || letter === 'y')) {
+    // a browser would undo what was typed, and go there
+    event.preventDefault()
+    return letter === 'y' || event.shiftKey ? store.redo() : store.undo()
+  }
+  if (types || event.ctrlKey || event.metaKey || event.altKey) return
+  if (event.key === ' ' && !target.closest('button, summary, a')) {
+    event.preventDefault()
+    timeline.toggle()
+  }
+  if (target !== by('wall')) return
+  const ways = /** @type {Record<string, [number, number]>} */ ({ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] })
+  const way = ways[event.key]
+  if (way) {
+    event.preventDefault()
+    const by_m = NUDGE_M * (event.shiftKey ? 10 : 1)
+    const { x, y } = wall.box
+    const box = { ...wall.box, x: x + way[0] * by_m, y: y + way[1] * by_m }
+    wall.place(box)
+    store.flags(placed(box))
+  }
+  if (event.key === '+' || event.key === '=') wall.zoom(1.25)
+  if (event.key === '-' || event.key === '−') wall.zoom(0.8)
+  if (event.key === '0') wall.fit()
+}
+
+/** @param {string} name */
+function theme(name) {
+  const at = THEMES.findIndex(([known]) => known === name)
+  const [known, label] = THEMES[Math.max(0, at)]
+  document.documentElement.dataset.theme = known
+  by('theme').textContent = label
+  localStorage.setItem('theme', known)
+  wall.redraw()
+}
+
+store.watch((asked) => {
+  fields.show(asked.flags)
+  wall.place({ ...boxOf(asked.flags), width: wall.box.width, height: wall.box.height })
+  for (const button of by('pictures').querySelectorAll('button')) button.setAttribute('aria-pressed', String(button.title === asked.picture))
+  by('name').textContent = asked.picture
+  planSoon()
+})
+
+by('trace').addEventListener('click', trace)
+by('stop').addEventListener('click', stop)
+by('open').addEventListener('click', () => by('file').click())
+by('file').addEventListener('change', () => take(/** @type {HTMLInputElement} */ (by('file')).files?.[0]))
+by('copy').addEventListener('click', () => navigator.clipboard?.writeText(by('command').textContent ?? ''))
+by('zoom-in').addEventListener('click', () => wall.zoom(1.25))
+by('zoom-out').addEventListener('click', () => wall.zoom(0.8))
+by('zoom-fit').addEventListener('click', () => wall.fit())
+by('theme').addEventListener('click', () => {
+  const at = THEMES.findIndex(([name]) => name === document.documentElement.dataset.theme)
+  theme(THEMES[(at + 1) % THEMES.length][0])
+})
+addEventListener('keydown', key)
+addEventListener('hashchange', view)
+addEventListener('paste', (event) => take(event.clipboardData?.files[0]))
+addEventListener('dragover', (event) => event.preventDefault())
+addEventListener('drop', (event) => {
+  event.preventDefault()
+  take(event.dataTransfer?.files[0])
+})
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => wall.redraw())
+
+theme(localStorage.getItem('theme') ?? 'auto')
+fields.show({})
+by('name').textContent = store.asked.picture
+planSoon(0)
+list().catch(problem)
+api.about().then((told) => (folder = told.folder)).then(view, problem)
+api.job().then((job) => {
+  // one that goes on when the page is loaded again
+  if (job && !job.over) {
+    setTracing(true)
+    follow((now) => lamp(`◔ ${words(now)}`)).then((ended) => ended && showResult(by('result'), ended)).catch(problem).finally(() => setTracing(false))
+  }
+}, problem)

@@ -1,0 +1,419 @@
+// @ts-check
+/** The wall in true size: rulers, the drawing, its handles. The drawing is drawn once for each zoom, and that picture is moved while somebody drags it. */
+
+import { Lit, boundsOf, coloursOf, drawPlan, tidy } from './paint.js'
+import { length } from './words.js'
+
+/**
+ * @typedef {import('./api.js').Points} Points
+ * @typedef {import('./paint.js').Colours} Colours
+ * @typedef {{ x: number, y: number, turn: number, width: number, height: number }} Box where the picture lies: its middle and size, m, y up; its turn, rad, anticlockwise
+ * @typedef {{ x: number, y: number, scale: number }} View what is seen: the point in the middle, m, and pixels a metre
+ */
+
+/** Pixels around the drawing when all is shown; of the rulers; of a handle. */
+const MARGIN = 64
+const RULER = 26
+const HANDLE = 7
+/** Rows of the drawing that are drawn in a piece: an event can come between two. */
+const SPAN_M = 5e-4
+/** Largest picture of the drawing, pixels either way. */
+const MOST_PIXELS = 4096
+/** The longest way that a move by keys or a click is not a drag, pixels. */
+const CLICK = 3
+
+export class Wall {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {(box: Box, done: boolean) => void} moved when somebody has dragged it, and while
+   */
+  constructor(canvas, moved) {
+    this.canvas = canvas
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'))
+    this.moved = moved
+    /** @type {Points | null} */
+    this.points = null
+    /** @type {Box} where it was planned */
+    this.planned = { x: 0, y: 0, turn: 0, width: 0.6, height: 0.45 }
+    /** @type {Box} where it is to be */
+    this.box = { ...this.planned }
+    /** @type {View} */
+    this.view = { x: 0, y: 0, scale: 600 }
+    this.tick = -1
+    /** @type {{ image: HTMLCanvasElement, left: number, top: number, scale: number } | null} */
+    this.bitmap = null
+    /** @type {{ kind: string, from: [number, number], box: Box, view: View, far: boolean } | null} */
+    this.drag = null
+    /** @type {Map<number, [number, number]>} */
+    this.fingers = new Map()
+    this.lit = new Lit()
+    this.dirty = true
+    this.first = true
+    new ResizeObserver(() => this.#resized()).observe(canvas)
+    this.#listen()
+    const frame = () => {
+      if (this.dirty) this.#draw()
+      requestAnimationFrame(frame)
+    }
+    requestAnimationFrame(frame)
+  }
+
+  /** Takes a plan, or none. @param {Points | null} points @param {Box} box */
+  show(points, box) {
+    // who has looked closer goes on looking there
+    const fits = this.points === null || this.#isSeen(this.planned)
+    this.points = points
+    this.planned = { ...box }
+    if (!this.drag) this.box = { ...box }
+    this.bitmap = null
+    this.lit.forget()
+    this.dirty = true
+    if (fits && !this.#isSeen(this.box)) this.fit()
+    else if (this.first) this.fit()
+    this.first = false
+  }
+
+  /** Where it is to be, until it is planned there. @param {Box} box */
+  place(box) {
+    if (this.drag) return
+    this.box = { ...box }
+    this.dirty = true
+  }
+
+  /** The moment that is shown, a row of the plan; −1 for all of it. @param {number} tick */
+  at(tick) {
+    this.tick = tick
+    this.dirty = true
+  }
+
+  redraw() {
+    this.bitmap = null
+    this.lit.forget()
+    this.dirty = true
+  }
+
+  /** @param {number} factor @param {[number, number]} [about] pixels */
+  zoom(factor, about) {
+    const [px, py] = about ?? [this.canvas.clientWidth / 2, this.canvas.clientHeight / 2]
+    const [x, y] = this.#place([px, py])
+    this.view.scale = Math.min(1e5, Math.max(5, this.view.scale * factor))
+    const [after_x, after_y] = this.#place([px, py])
+    this.view.x += x - after_x
+    this.view.y += y - after_y
+    this.dirty = true
+  }
+
+  /** Shows all of the drawing. */
+  fit() {
+    const { clientWidth: wide, clientHeight: high } = this.canvas
+    const corners = this.#corners(this.box)
+    const [xs, ys] = [corners.map(([x]) => x), corners.map(([, y]) => y)]
+    const [left, right, low, top] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)]
+    const margin = Math.min(MARGIN, 0.1 * wide)
+    const room = (/** @type {number} */ pixels) => Math.max(40, pixels - 2 * margin - RULER)
+    this.view.scale = Math.min(room(wide) / (right - left), room(high) / (top - low))
+    this.view.x = (left + right) / 2 - RULER / 2 / this.view.scale
+    this.view.y = (low + top) / 2 + RULER / 2 / this.view.scale
+    this.dirty = true
+  }
+
+  /** Whether all of the drawing is in view, and not small in it. @param {Box} box */
+  #isSeen(box) {
+    const { clientWidth: wide, clientHeight: high } = this.canvas
+    const corners = this.#corners(box).map((corner) => this.#pixels(corner))
+    const inside = corners.every(([x, y]) => x >= RULER && x <= wide && y >= RULER && y <= high)
+    return inside && box.width * this.view.scale > 0.1 * wide
+  }
+
+  #resized() {
+    if (this.canvas.clientWidth === 0) return
+    const ratio = window.devicePixelRatio || 1
+    this.canvas.width = Math.round(this.canvas.clientWidth * ratio)
+    this.canvas.height = Math.round(this.canvas.clientHeight * ratio)
+    this.fit()
+  }
+
+  /** Pixels of a place. @param {[number, number]} at @returns {[number, number]} */
+  #pixels([x, y]) {
+    const { scale } = this.view
+    return [this.canvas.clientWidth / 2 + (x - this.view.x) * scale, this.canvas.clientHeight / 2 - (y - this.view.y) * scale]
+  }
+
+  /** The place at a pixel. @param {[number, number]} at @returns {[number, number]} */
+  #place([px, py]) {
+    const { scale } = this.view
+    return [this.view.x + (px - this.canvas.clientWidth / 2) / scale, this.view.y - (py - this.canvas.clientHeight / 2) / scale]
+  }
+
+  /** The corners of a box, from its left top one clockwise, and the place of its ring. @param {Box} box @returns {[number, number][]} */
+  #corners(box) {
+    const [cos, sin] = [Math.cos(box.turn), Math.sin(box.turn)]
+    const at = (/** @type {number} */ x, /** @type {number} */ y) =>
+      /** @type {[number, number]} */ ([box.x + x * cos - y * sin, box.y + x * sin + y * cos])
+    const [w, h] = [box.width / 2, box.height / 2]
+    return [at(-w, h), at(w, h), at(w, -h), at(-w, -h)]
+  }
+
+  /** @returns {[number, number]} pixels of the ring by which it is turned */
+  #ring() {
+    const [[ax, ay], [bx, by]] = this.#corners(this.box).map((corner) => this.#pixels(corner))
+    const [mx, my] = [(ax + bx) / 2, (ay + by) / 2]
+    const [sin, cos] = [Math.sin(this.box.turn), Math.cos(this.box.turn)]
+    return [mx - 26 * sin, my - 26 * cos]
+  }
+
+  #draw() {
+    this.dirty = false
+    // another view is shown
+    if (this.canvas.clientWidth === 0) return
+    const { context, canvas } = this
+    const ratio = window.devicePixelRatio || 1
+    const colours = coloursOf(canvas)
+    context.setTransform(ratio, 0, 0, ratio, 0, 0)
+    context.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight)
+    this.#grid(colours)
+    if (this.points) {
+      const still = this.drag === null && same(this.box, this.planned)
+      if (!this.bitmap || (this.drag === null && off(this.bitmap.scale, this.view.scale))) this.#paint(colours)
+      context.save()
+      this.#carry(context)
+      if (this.bitmap) {
+        const { image, left, top, scale } = this.bitmap
+        context.globalAlpha = this.tick >= 0 && still ? 0.28 : 1
+        context.drawImage(image, left, top, image.width / scale, image.height / scale)
+        context.globalAlpha = 1
+      }
+      context.restore()
+      if (this.tick >= 0 && still) this.#light(colours)
+    }
+    this.#handles(colours)
+    this.#rulers(colours)
+  }
+
+  /** Puts what was planned where it is to be: from then on one is a metre, y down, from the middle of what was planned. @param {CanvasRenderingContext2D} context */
+  #carry(context) {
+    const [px, py] = this.#pixels([this.box.x, this.box.y])
+    const by = this.box.width / this.planned.width
+    context.translate(px, py)
+    context.rotate(this.planned.turn - this.box.turn)
+    context.scale(this.view.scale * by, this.view.scale * by)
+  }
+
+  /** Draws the plan anew, as it was planned, for this zoom. @param {Colours} colours */
+  #paint(colours) {
+    const points = /** @type {Points} */ (this.points)
+    const ratio = window.devicePixelRatio || 1
+    const [left, top, right, low] = boundsOf(points, this.planned)
+    const fits = MOST_PIXELS / Math.max(right - left, low - top, 1e-6)
+    const scale = Math.min(this.view.scale * ratio, fits)
+    const image = document.createElement('canvas')
+    const pad = 3
+    image.width = Math.ceil((right - left) * scale) + 2 * pad
+    image.height = Math.ceil((low - top) * scale) + 2 * pad
+    const context = /** @type {CanvasRenderingContext2D} */ (image.getContext('2d'))
+    context.translate(pad - left * scale, pad - top * scale)
+    drawPlan(context, points, this.planned, scale, ratio, colours)
+    this.bitmap = { image, left: left - pad / scale, top: top - pad / scale, scale }
+  }
+
+  /** What is drawn until now, and the spot. @param {Colours} colours */
+  #light(colours) {
+    const points = /** @type {Points} */ (this.points)
+    const ratio = window.devicePixelRatio || 1
+    const seen = this.lit.until(this.tick, points, this.view, this.canvas, ratio, colours)
+    this.context.drawImage(seen, 0, 0, this.canvas.clientWidth, this.canvas.clientHeight)
+    const tick = Math.min(this.tick, points.rows - 1)
+    const [x, y] = this.#pixels([points.x[tick], points.y[tick]])
+    const is_lit = points.lit[tick] > 0
+    this.context.beginPath()
+    this.context.arc(x, y, is_lit ? 5 : 3.5, 0, 2 * Math.PI)
+    this.context.fillStyle = is_lit ? colours.light : colours.wall
+    this.context.strokeStyle = is_lit ? colours.light : colours.soft
+    this.context.lineWidth = 1.5
+    this.context.fill()
+    this.context.stroke()
+    if (is_lit) {
+      this.context.beginPath()
+      this.context.arc(x, y, 11, 0, 2 * Math.PI)
+      this.context.globalAlpha = 0.25
+      this.context.fill()
+      this.context.globalAlpha = 1
+    }
+  }
+
+  /** @param {Colours} colours */
+  #grid(colours) {
+    const { context, canvas } = this
+    context.fillStyle = colours.wall
+    context.fillRect(0, 0, canvas.clientWidth, canvas.clientHeight)
+    const step = tidy(80 / this.view.scale)
+    const [left, top] = this.#place([0, 0])
+    const [right, low] = this.#place([canvas.clientWidth, canvas.clientHeight])
+    context.strokeStyle = colours.grid
+    context.lineWidth = 1
+    context.beginPath()
+    for (let n = Math.ceil(left / step); n * step <= right; n++) {
+      const [x] = this.#pixels([n * step, 0])
+      context.moveTo(Math.round(x) + 0.5, 0)
+      context.lineTo(Math.round(x) + 0.5, canvas.clientHeight)
+    }
+    for (let n = Math.ceil(low / step); n * step <= top; n++) {
+      const [, y] = this.#pixels([0, n * step])
+      context.moveTo(0, Math.round(y) + 0.5)
+      context.lineTo(canvas.clientWidth, Math.round(y) + 0.5)
+    }
+    context.stroke()
+  }
+
+  /** @param {Colours} colours */
+  #rulers(colours) {
+    const { context, canvas } = this
+    const [wide, high] = [canvas.clientWidth, canvas.clientHeight]
+    context.fillStyle = colours.card
+    context.fillRect(0, 0, wide, RULER)
+    context.fillRect(0, 0, RULER, high)
+    context.strokeStyle = colours.rule
+    context.lineWidth = 1
+    context.strokeRect(RULER - 0.5, RULER - 0.5, wide, high)
+    context.fillStyle = colours.soft
+    context.font = '11px system-ui, sans-serif'
+    context.textBaseline = 'middle'
+    context.textAlign = 'center'
+    const step = tidy(80 / this.view.scale)
+    const [unit, a_metre] = step >= 0.5 ? ['m', 1] : step >= 0.005 ? ['cm', 100] : ['mm', 1000]
+    const name = (/** @type {number} */ m) => String(Number((m * a_metre).toFixed(3)))
+    const [left, top] = this.#place([RULER, RULER])
+    const [right, low] = this.#place([wide, high])
+    for (let n = Math.ceil(left / step); n * step <= right; n++) {
+      const [x] = this.#pixels([n * step, 0])
+      if (x > RULER + 14) context.fillText(name(n * step), x, RULER / 2)
+    }
+    for (let n = Math.ceil(low / step); n * step <= top; n++) {
+      const [, y] = this.#pixels([0, n * step])
+      if (y < RULER + 14) continue
+      context.save()
+      context.translate(RULER / 2, y)
+      context.rotate(-Math.PI / 2)
+      context.fillText(name(n * step), 0, 0)
+      context.restore()
+    }
+    context.fillText(unit, RULER / 2, RULER / 2)
+  }
+
+  /** @param {Colours} colours */
+  #handles(colours) {
+    const { context } = this
+    const corners = this.#corners(this.box).map((corner) => this.#pixels(corner))
+    context.strokeStyle = colours.accent
+    context.fillStyle = colours.card
+    context.lineWidth = 1.25
+    context.setLineDash([5, 4])
+    context.beginPath()
+    corners.forEach(([x, y], n) => (n === 0 ? context.moveTo(x, y) : context.lineTo(x, y)))
+    context.closePath()
+    context.stroke()
+    context.setLineDash([])
+    for (const [x, y] of corners) {
+      context.fillRect(x - HANDLE / 2, y - HANDLE / 2, HANDLE, HANDLE)
+      context.strokeRect(x - HANDLE / 2, y - HANDLE / 2, HANDLE, HANDLE)
+    }
+    const [rx, ry] = this.#ring()
+    context.beginPath()
+    context.arc(rx, ry, 5, 0, 2 * Math.PI)
+    context.fill()
+    context.stroke()
+    context.fillStyle = colours.soft
+    context.font = '12px system-ui, sans-serif'
+    context.textAlign = 'center'
+    const lowest = Math.max(...corners.map(([, y]) => y))
+    const middle = corners.reduce((sum, [x]) => sum + x, 0) / 4
+    context.fillText(`${length(this.box.width)} × ${length(this.box.height)}`, middle, lowest + 16)
+  }
+
+  #listen() {
+    const { canvas } = this
+    canvas.addEventListener('wheel', (event) => {
+      event.preventDefault()
+      this.zoom(Math.exp(-event.deltaY * 0.0015), [event.offsetX, event.offsetY])
+    })
+    canvas.addEventListener('pointerdown', (event) => this.#begin(event))
+    canvas.addEventListener('pointermove', (event) => this.#go(event))
+    for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, (event) => this.#end(/** @type {PointerEvent} */ (event)))
+    canvas.addEventListener('dblclick', () => this.fit())
+  }
+
+  /** What lies under a pixel. @param {[number, number]} at */
+  #under([px, py]) {
+    const near = (/** @type {[number, number]} */ [x, y], /** @type {number} */ far) => Math.hypot(px - x, py - y) < far
+    if (near(this.#ring(), 16)) return 'turn'
+    if (this.#corners(this.box).some((corner) => near(this.#pixels(corner), 16))) return 'size'
+    const [x, y] = this.#place([px, py])
+    const [cos, sin] = [Math.cos(this.box.turn), Math.sin(this.box.turn)]
+    const [dx, dy] = [x - this.box.x, y - this.box.y]
+    const inside = Math.abs(dx * cos + dy * sin) <= this.box.width / 2 && Math.abs(dy * cos - dx * sin) <= this.box.height / 2
+    return inside ? 'move' : 'pan'
+  }
+
+  /** @param {PointerEvent} event */
+  #begin(event) {
+    const at = /** @type {[number, number]} */ ([event.offsetX, event.offsetY])
+    this.canvas.setPointerCapture(event.pointerId)
+    this.fingers.set(event.pointerId, at)
+    const kind = this.fingers.size > 1 ? 'pinch' : this.#under(at)
+    this.drag = { kind, from: kind === 'pinch' ? this.#pinch() : at, box: { ...this.box }, view: { ...this.view }, far: false }
+  }
+
+  /** The fingers' middle and how far they are apart. @returns {[number, number]} */
+  #pinch() {
+    const [[ax, ay], [bx, by]] = [...this.fingers.values()]
+    return [Math.hypot(ax - bx, ay - by), (ax + bx) / 2]
+  }
+
+  /** @param {PointerEvent} event */
+  #go(event) {
+    const at = /** @type {[number, number]} */ ([event.offsetX, event.offsetY])
+    if (!this.drag) {
+      this.canvas.dataset.under = this.#under(at)
+      return
+    }
+    this.fingers.set(event.pointerId, at)
+    const { kind, from, box, view } = this.drag
+    this.drag.far ||= Math.hypot(at[0] - from[0], at[1] - from[1]) > CLICK
+    if (!this.drag.far && kind !== 'pinch') return
+    const [dx, dy] = [(at[0] - from[0]) / this.view.scale, -(at[1] - from[1]) / this.view.scale]
+    const [cx, cy] = this.#pixels([box.x, box.y])
+    if (kind === 'move') this.box = { ...box, x: box.x + dx, y: box.y + dy }
+    else if (kind === 'pan') this.view = { ...view, x: view.x - dx, y: view.y - dy }
+    else if (kind === 'pinch') this.zoom((this.#pinch()[0] / from[0]) * (view.scale / this.view.scale))
+    else if (kind === 'size') {
+      const by = Math.max(0.02, Math.hypot(at[0] - cx, at[1] - cy) / Math.max(8, Math.hypot(from[0] - cx, from[1] - cy)))
+      this.box = { ...box, width: box.width * by, height: box.height * by }
+    } else if (kind === 'turn') {
+      const turned = Math.atan2(cx - at[0], cy - at[1])
+      const degree = Math.PI / 180
+      this.box = { ...box, turn: Math.round(turned / degree) * degree }
+    }
+    this.dirty = true
+    if (['move', 'size', 'turn'].includes(kind)) this.moved(this.box, false)
+  }
+
+  /** @param {PointerEvent} event */
+  #end(event) {
+    this.fingers.delete(event.pointerId)
+    const drag = this.drag
+    this.drag = null
+    this.dirty = true
+    if (drag?.far && ['move', 'size', 'turn'].includes(drag.kind)) this.moved(this.box, true)
+  }
+}
+
+/** @param {Box} a @param {Box} b */
+function same(a, b) {
+  return Math.hypot(a.x - b.x, a.y - b.y) < SPAN_M && Math.abs(a.turn - b.turn) < 1e-3 && Math.abs(a.width - b.width) < SPAN_M
+}
+
+/** Whether a picture for one zoom is too coarse or too fine for another. @param {number} of @param {number} scale */
+function off(of, scale) {
+  const ratio = of / (scale * (window.devicePixelRatio || 1))
+  return ratio < 0.8 || ratio > 2.5
+}

@@ -1,0 +1,97 @@
+//! The page's own files, as they are in the program.
+
+use std::io::Write as _;
+use std::sync::OnceLock;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+/// A file of the page.
+pub(crate) struct Asset {
+    pub(crate) name: &'static str,
+    pub(crate) kind: &'static str,
+    pub(crate) text: &'static str,
+}
+
+macro_rules! asset {
+    ($name:literal, $kind:literal) => {
+        Asset { name: $name, kind: $kind, text: include_str!(concat!("../page/", $name)) }
+    };
+}
+
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+
+macro_rules! script {
+    ($name:literal) => {
+        Asset { name: $name, kind: SCRIPT, text: include_str!(concat!("../page/", $name)) }
+    };
+}
+
+/// The page first.
+pub(crate) static ASSETS: [Asset; 12] = [
+    asset!("index.html", "text/html; charset=utf-8"),
+    asset!("style.css", "text/css; charset=utf-8"),
+    asset!("icon.svg", "image/svg+xml"),
+    script!("main.js"),
+    script!("api.js"),
+    script!("store.js"),
+    script!("wall.js"),
+    script!("paint.js"),
+    script!("timeline.js"),
+    script!("fields.js"),
+    script!("runs.js"),
+    script!("words.js"),
+];
+
+/// A file in both forms, and what tells one version from another.
+pub(crate) struct Packed {
+    pub(crate) asset: &'static Asset,
+    pub(crate) zipped: Vec<u8>,
+    pub(crate) tag: String,
+}
+
+/// The file of a name.
+pub(crate) fn packed(name: &str) -> Option<&'static Packed> {
+    static ALL: OnceLock<Vec<Packed>> = OnceLock::new();
+    ALL.get_or_init(|| ASSETS.iter().map(pack).collect()).iter().find(|packed| packed.asset.name == name)
+}
+
+fn pack(asset: &'static Asset) -> Packed {
+    let mut zip = GzEncoder::new(Vec::new(), Compression::best());
+    // writing to memory cannot fail; nothing zipped is served as it is
+    let zipped = zip.write_all(asset.text.as_bytes()).and_then(|()| zip.finish()).unwrap_or_default();
+    let sum = asset
+        .text
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |sum, byte| (sum ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
+    Packed { asset, zipped, tag: format!("\"{sum:016x}\"") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_view_is_light_and_everything_it_imports_is_there() {
+        let all: usize =
+            ASSETS.iter().filter_map(|asset| packed(asset.name)).map(|packed| packed.zipped.len()).sum();
+        assert!(all > 1000 && all <= 60 * 1024, "{all} bytes");
+        for asset in &ASSETS {
+            for line in asset.text.lines().filter(|line| line.starts_with("import ")) {
+                let from = line.rsplit('\'').nth(1).unwrap().trim_start_matches("./");
+                assert!(packed(from).is_some(), "{}: {line}", asset.name);
+            }
+        }
+        assert!(packed("../Cargo.toml").is_none());
+    }
+
+    #[test]
+    fn nothing_of_it_comes_from_elsewhere() {
+        for asset in &ASSETS {
+            let found = asset.text.find("http://").or_else(|| asset.text.find("https://"));
+            let is_name = |at: usize| asset.text[at..].starts_with("http://www.w3.org/");
+            assert!(found.is_none_or(is_name), "{} asks another server", asset.name);
+            assert!(!asset.text.contains("innerHTML"), "{} makes markup of text", asset.name);
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! What the studio has in hand: plans that were asked for, and one job at a time.
+
+use std::collections::{HashMap, VecDeque};
+use std::fs;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use serde_json::{Map, Value, json};
+use tracelight_task::Failure;
+
+use crate::flags::{arguments, typed};
+use crate::folder::Folder;
+use crate::points;
+use crate::program::{Performed, Program};
+use crate::tasks::{Ended, Work};
+
+/// Plans whose points are kept for pages to fetch.
+const KEPT_PLANS: usize = 16;
+/// Pages of which is known what they asked for last.
+const MOST_PAGES: usize = 64;
+
+/// Everything in hand.
+pub(crate) struct Desk {
+    pub(crate) program: Box<dyn Program>,
+    pub(crate) folder: Folder,
+    next: AtomicU64,
+    plans: Mutex<VecDeque<(u64, Arc<Vec<u8>>)>>,
+    /// What each page has planned now.
+    asked: Mutex<HashMap<String, Arc<Work>>>,
+    job: Mutex<Option<Job>>,
+}
+
+/// A picture that is traced, or the last one that was.
+#[derive(Clone)]
+struct Job {
+    work: Arc<Work>,
+    run: String,
+}
+
+fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Desk {
+    pub(crate) fn new(program: Box<dyn Program>, folder: Folder) -> Self {
+        Self {
+            program,
+            folder,
+            next: AtomicU64::new(1),
+            plans: Mutex::default(),
+            asked: Mutex::default(),
+            job: Mutex::default(),
+        }
+    }
+
+    fn work(&self) -> Arc<Work> {
+        Work::new(self.next.fetch_add(1, Ordering::Relaxed))
+    }
+
+    /// The command line of what a page asks for.
+    fn command(&self, name: &str, picture: &str, flags: &Map<String, Value>) -> Result<Vec<String>, Failure> {
+        let Some(path) = self.folder.picture(picture) else {
+            return Err(Failure::usage(
+                "unreadable",
+                format!("there is no picture {picture:?} in the studio's folder"),
+            ));
+        };
+        let mut command = vec![name.to_owned(), path.to_string_lossy().into_owned()];
+        command.extend(arguments(flags)?);
+        Ok(command)
+    }
+
+    /// Plans a picture. What the same page asked for before and is not done is ended.
+    ///
+    /// # Errors
+    /// What the program says; `interrupted` where the page has asked for another since.
+    pub(crate) fn plan(
+        &self,
+        page: &str,
+        picture: &str,
+        flags: &Map<String, Value>,
+    ) -> Result<Value, Failure> {
+        let command = self.command("plan", picture, flags)?;
+        let work = self.work();
+        {
+            let mut asked = locked(&self.asked);
+            if asked.len() >= MOST_PAGES {
+                asked.retain(|_, work| !work.is_over());
+            }
+            if let Some(before) = asked.insert(page.to_owned(), Arc::clone(&work)) {
+                before.stop.want();
+            }
+        }
+        let table = self.folder.dir().join(format!(".plan-{}.csv", work.id));
+        let out = ["-o".to_owned(), table.to_string_lossy().into_owned(), "--json".to_owned()];
+        let all: Vec<String> = command.iter().cloned().chain(out).collect();
+        let planned = self.program.perform(&all, &*work, &work.stop);
+        let text = fs::read_to_string(&table).unwrap_or_default();
+        // what cannot be removed is written over another time
+        let _ = fs::remove_file(&table);
+        work.end(Ended { answer: Value::Null, failure: None });
+        let answer = json_of(planned?)?;
+        let bytes = points::binary(&text, &answer)
+            .ok_or_else(|| Failure::failed("internal", "the plan's table cannot be read"))?;
+        let mut plans = locked(&self.plans);
+        plans.push_back((work.id, Arc::new(bytes)));
+        if plans.len() > KEPT_PLANS {
+            plans.pop_front();
+        }
+        Ok(json!({
+            "id": work.id, "command": typed(&traced(&command)), "plan": answer, "remarks": work.remarks(),
+            "points": format!("/api/v1/plans/{}/points", work.id),
+        }))
+    }
+
+    /// A plan's points.
+    pub(crate) fn points(&self, id: u64) -> Option<Arc<Vec<u8>>> {
+        locked(&self.plans).iter().find(|(known, _)| *known == id).map(|(_, bytes)| Arc::clone(bytes))
+    }
+
+    /// Begins to trace a picture on the simulated rig; what is to be run then.
+    ///
+    /// # Errors
+    /// `busy` while another one is; what is wrong with the flags.
+    pub(crate) fn trace(
+        self: &Arc<Self>,
+        picture: &str,
+        flags: &Map<String, Value>,
+    ) -> Result<(Value, impl FnOnce() + Send + use<>), Failure> {
+        let mut command = self.command("trace", picture, flags)?;
+        let mut job = locked(&self.job);
+        if job.as_ref().is_some_and(|job| !job.work.is_over()) {
+            return Err(Failure::failed(
+                "busy",
+                "a picture is being traced: stop it, or wait until it is done",
+            ));
+        }
+        let (run, dir) = self.folder.begin_run(picture)?;
+        command.extend(["--out".to_owned(), dir.to_string_lossy().into_owned(), "--json".to_owned()]);
+        let work = self.work();
+        *job = Some(Job { work: Arc::clone(&work), run });
+        drop(job);
+        let desk = Arc::clone(self);
+        let begun = self.job();
+        Ok((begun, move || {
+            let done = desk.program.perform(&command, &*work, &work.stop).and_then(|performed| {
+                let failure = performed.failure.clone();
+                Ok(Ended { answer: json_of(performed)?, failure })
+            });
+            work.end(done.unwrap_or_else(|failure| Ended { answer: Value::Null, failure: Some(failure) }));
+        }))
+    }
+
+    /// The job in hand, or the last one; null where there was none.
+    pub(crate) fn job(&self) -> Value {
+        let job = locked(&self.job).clone();
+        job.map_or(Value::Null, |job| {
+            let mut told = job.work.json();
+            told["run"] = json!(job.run);
+            told
+        })
+    }
+
+    /// Ends the job in hand, dark; whether there was one.
+    pub(crate) fn stop(&self) -> bool {
+        let job = locked(&self.job);
+        let is_on = job.as_ref().filter(|job| !job.work.is_over());
+        is_on.is_some_and(|job| {
+            job.work.stop.want();
+            true
+        })
+    }
+
+    /// What a command without a picture answers.
+    ///
+    /// # Errors
+    /// What the program says.
+    pub(crate) fn ask(&self, command: &[&str]) -> Result<Value, Failure> {
+        let command: Vec<String> = command.iter().map(|&word| word.to_owned()).collect();
+        let work = self.work();
+        json_of(self.program.perform(&command, &*work, &work.stop)?)
+    }
+}
+
+fn json_of(performed: Performed) -> Result<Value, Failure> {
+    serde_json::from_str(&performed.json)
+        .map_err(|e| Failure::failed("internal", format!("the program's answer is no JSON: {e}")))
+}
+
+/// The command that draws what another one plans.
+fn traced(command: &[String]) -> Vec<String> {
+    std::iter::once("trace".to_owned()).chain(command.iter().skip(1).cloned()).collect()
+}

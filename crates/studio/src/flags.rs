@@ -1,0 +1,139 @@
+//! What a page asks for, as a command line has it: the same names with underscores, the same values as text.
+
+use serde_json::{Map, Value};
+use tracelight_task::{Failure, nearest};
+
+/// Flags of `plan` and `trace` that a page may give. None of them names a file.
+const FLAGS: [&str; 29] = [
+    "width",
+    "height",
+    "offset",
+    "rotate",
+    "flip",
+    "from",
+    "fit",
+    "no_go",
+    "layer",
+    "colour",
+    "distance",
+    "rig",
+    "speed",
+    "lit_speed",
+    "corner",
+    "profile",
+    "amax",
+    "order",
+    "mode",
+    "threshold",
+    "despeckle",
+    "min_length",
+    "tolerance",
+    "unit",
+    "hidden",
+    "crop",
+    "dashes",
+    "letters",
+    "hatch",
+];
+/// Longest value, bytes: none of these needs more.
+const MOST_BYTES: usize = 200;
+/// How often a flag may be repeated.
+const MOST_TIMES: usize = 100;
+
+/// The arguments that these flags are; a flag that is null, false or empty is left out.
+///
+/// # Errors
+/// `usage`: one that there is not, or a value that none has.
+pub(crate) fn arguments(flags: &Map<String, Value>) -> Result<Vec<String>, Failure> {
+    let mut arguments = Vec::new();
+    for (name, value) in flags {
+        if !FLAGS.contains(&name.as_str()) {
+            let near =
+                nearest(name, FLAGS).map_or_else(String::new, |near| format!("; did you mean {near}?"));
+            return Err(refused(format!("{name} is no flag that the studio takes{near}")));
+        }
+        let flag = name.replace('_', "-");
+        match value {
+            Value::Null | Value::Bool(false) => {}
+            Value::Bool(true) => arguments.push(format!("--{flag}")),
+            Value::Array(values) if values.len() <= MOST_TIMES => {
+                for value in values {
+                    arguments.extend(argument(&flag, value)?);
+                }
+            }
+            value => arguments.extend(argument(&flag, value)?),
+        }
+    }
+    Ok(arguments)
+}
+
+fn argument(flag: &str, value: &Value) -> Result<Option<String>, Failure> {
+    let text = match value {
+        Value::String(text) => text.trim().to_owned(),
+        Value::Number(number) => number.to_string(),
+        _ => return Err(refused(format!("{flag} is a text, such as \"3m\"; it is {value}"))),
+    };
+    if text.len() > MOST_BYTES || text.contains(|c: char| c.is_control()) {
+        return Err(refused(format!("{flag} is longer than {MOST_BYTES} bytes, or not one line")));
+    }
+    if flag == "rig" && !text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-') {
+        return Err(refused(format!("rig is a preset by name, such as report; it is {text}")));
+    }
+    // with its value in one argument: no value can be taken for another flag
+    Ok((!text.is_empty()).then(|| format!("--{flag}={text}")))
+}
+
+fn refused(message: String) -> Failure {
+    Failure::usage("usage", message)
+}
+
+/// A command line as somebody types it.
+pub(crate) fn typed(arguments: &[String]) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_=./,:%+".contains(c);
+    let word = |text: &String| match text.chars().all(plain) {
+        true => text.clone(),
+        false => format!("'{}'", text.replace('\'', r"'\''")),
+    };
+    let words: Vec<String> = arguments.iter().map(word).collect();
+    format!("tracelight {}", words.join(" "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn of(flags: Value) -> Result<Vec<String>, Failure> {
+        let Value::Object(flags) = flags else { unreachable!() };
+        arguments(&flags)
+    }
+
+    #[test]
+    fn flags_are_those_of_the_command_line() {
+        let asked =
+            json!({ "width": "3 m", "flip": true, "order": null, "lit_speed": "", "layer": ["a", "b c"] });
+        assert_eq!(of(asked).unwrap(), ["--flip", "--layer=a", "--layer=b c", "--width=3 m"]);
+        assert_eq!(
+            typed(&["plan".to_owned(), "--layer=b c".to_owned(), "it's".to_owned()]),
+            r"tracelight plan '--layer=b c' 'it'\''s'"
+        );
+    }
+
+    #[test]
+    fn what_names_a_file_or_is_no_flag_is_refused() {
+        for (flags, why) in [
+            (json!({ "out": "/etc/passwd" }), "out is no flag"),
+            (json!({ "widht": "3m" }), "did you mean width?"),
+            (json!({ "rig": "/dev/ttyACM0" }), "a preset by name"),
+            (json!({ "rig": "../../x.toml" }), "a preset by name"),
+            (json!({ "width": { "m": 3 } }), "width is a text"),
+            (json!({ "width": "3m\n--out" }), "not one line"),
+            (json!({ "layer": ["x".repeat(300)] }), "longer than 200 bytes"),
+        ] {
+            let refused = of(flags).unwrap_err();
+            assert!(refused.message.contains(why), "{}", refused.message);
+        }
+        // a value that looks like a flag stays a value
+        assert_eq!(of(json!({ "width": "--out=x" })).unwrap(), ["--width=--out=x"]);
+    }
+}

@@ -1,0 +1,211 @@
+//! The studio's folder: pictures that were given to it, and the runs made of them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use tracelight_files as files;
+use tracelight_task::Failure;
+
+/// Largest picture that is taken, bytes.
+pub(crate) const MOST_BYTES: usize = 64 << 20;
+/// How a picture's name may end.
+const KINDS: [(&str, &str); 15] = [
+    ("png", "image/png"),
+    ("jpg", "image/jpeg"),
+    ("jpeg", "image/jpeg"),
+    ("webp", "image/webp"),
+    ("bmp", "image/bmp"),
+    ("gif", "image/gif"),
+    ("svg", "image/svg+xml"),
+    ("pnm", "image/x-portable-anymap"),
+    ("pgm", "image/x-portable-graymap"),
+    ("ppm", "image/x-portable-pixmap"),
+    ("tif", "image/tiff"),
+    ("tiff", "image/tiff"),
+    ("dxf", "application/octet-stream"),
+    ("json", "application/json"),
+    ("csv", "text/csv"),
+];
+/// Those that browsers show.
+const SHOWN: [&str; 7] = ["png", "jpg", "jpeg", "webp", "bmp", "gif", "svg"];
+/// What of a run a page may show.
+const RUN_KINDS: [(&str, &str); 5] = [
+    ("html", "text/html; charset=utf-8"),
+    ("png", "image/png"),
+    ("svg", "image/svg+xml"),
+    ("json", "application/json"),
+    ("csv", "text/csv"),
+];
+/// Longest name of a picture, without its end.
+const MOST_LETTERS: usize = 60;
+
+/// What the program brings along.
+pub(crate) const EXAMPLES: [(&str, &[u8]); 6] = [
+    ("house.png", include_bytes!("../../../examples/house.png")),
+    ("star.png", include_bytes!("../../../examples/star.png")),
+    ("chalk.png", include_bytes!("../../../examples/chalk.png")),
+    ("handwriting.png", include_bytes!("../../../examples/handwriting.png")),
+    ("sign.svg", include_bytes!("../../../examples/sign.svg")),
+    ("wall.dxf", include_bytes!("../../../examples/wall.dxf")),
+];
+
+/// A folder in which everything lies that a page shows.
+#[derive(Clone, Debug)]
+pub(crate) struct Folder {
+    dir: PathBuf,
+}
+
+impl Folder {
+    /// Makes it where it is not there, and puts the examples in.
+    ///
+    /// # Errors
+    /// `cannot-write`.
+    pub(crate) fn open(dir: &Path) -> Result<Self, Failure> {
+        let folder = Self { dir: dir.to_owned() };
+        for part in [folder.pictures(), folder.runs()] {
+            fs::create_dir_all(&part).map_err(|e| cannot_write(&part, &e))?;
+        }
+        for (name, bytes) in EXAMPLES {
+            if !folder.pictures().join(name).exists() {
+                folder.put(name, bytes)?;
+            }
+        }
+        Ok(folder)
+    }
+
+    pub(crate) fn dir(&self) -> &Path {
+        &self.dir
+    }
+
+    fn pictures(&self) -> PathBuf {
+        self.dir.join("pictures")
+    }
+
+    pub(crate) fn runs(&self) -> PathBuf {
+        self.dir.join("runs")
+    }
+
+    /// Takes a picture in; its id. One of the same name and other bytes keeps its place.
+    ///
+    /// # Errors
+    /// `not-a-picture` by its name; `cannot-write`.
+    pub(crate) fn add(&self, name: &str, bytes: &[u8]) -> Result<String, Failure> {
+        let (stem, kind) = parted(name).ok_or_else(|| {
+            let known: Vec<&str> = KINDS.iter().map(|(kind, _)| *kind).collect();
+            Failure::usage(
+                "not-a-picture",
+                format!("{name:?} does not end as a picture or a drawing does: {}", known.join(", ")),
+            )
+        })?;
+        if bytes.is_empty() {
+            return Err(Failure::usage("not-a-picture", format!("{name} is empty")));
+        }
+        for number in 1..=9999 {
+            let id = if number == 1 { format!("{stem}.{kind}") } else { format!("{stem}-{number}.{kind}") };
+            match fs::read(self.pictures().join(&id)) {
+                Ok(there) if there == bytes => return Ok(id),
+                Ok(_) => {}
+                Err(_) => return self.put(&id, bytes).map(|()| id),
+            }
+        }
+        Err(Failure::failed(
+            "cannot-write",
+            format!("there are too many pictures of the name {stem}: delete some"),
+        ))
+    }
+
+    fn put(&self, id: &str, bytes: &[u8]) -> Result<(), Failure> {
+        files::write(&self.pictures().join(id).to_string_lossy(), bytes)
+    }
+
+    /// Where a picture lies; `None` where there is none of that id.
+    pub(crate) fn picture(&self, id: &str) -> Option<PathBuf> {
+        let (stem, kind) = parted(id)?;
+        let path = self.pictures().join(id);
+        (id == format!("{stem}.{kind}") && path.is_file()).then_some(path)
+    }
+
+    /// A picture's bytes and their type.
+    pub(crate) fn picture_bytes(&self, id: &str) -> Option<(Vec<u8>, &'static str)> {
+        let (_, kind) = parted(id)?;
+        let of_kind = KINDS.iter().find(|(known, _)| *known == kind)?.1;
+        Some((fs::read(self.picture(id)?).ok()?, of_kind))
+    }
+
+    /// All pictures: those that were given to it, the newest first, and the examples.
+    pub(crate) fn listed(&self) -> Value {
+        let entries = fs::read_dir(self.pictures()).into_iter().flatten().flatten();
+        let mut all: Vec<_> = entries
+            .filter_map(|entry| {
+                let id = entry.file_name().into_string().ok()?;
+                let (_, kind) = parted(&id)?;
+                let when = entry.metadata().and_then(|meta| meta.modified()).ok()?;
+                let example = EXAMPLES.iter().position(|(name, _)| *name == id);
+                let told = json!({ "id": id, "example": example.is_some(), "shows": SHOWN.contains(&kind.as_str()) });
+                Some((example, std::cmp::Reverse(when), told))
+            })
+            .collect();
+        // examples have no time that says anything
+        all.sort_by_key(|(example, when, _)| (*example, example.map_or(Some(*when), |_| None)));
+        all.into_iter().map(|(_, _, picture)| picture).collect()
+    }
+
+    /// Where the run of a picture goes.
+    ///
+    /// # Errors
+    /// `cannot-write`.
+    pub(crate) fn begin_run(&self, picture: &str) -> Result<(String, PathBuf), Failure> {
+        let stem = parted(picture).map_or_else(|| "run".to_owned(), |(stem, _)| stem);
+        let dir = files::ResultFolder::unused(&self.runs().join(stem))?;
+        let id = dir.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        Ok((id, dir))
+    }
+
+    /// A file of a run and its type; `None` where there is none that a page may show.
+    pub(crate) fn run_file(&self, run: &str, name: &str) -> Option<(Vec<u8>, &'static str)> {
+        let plain = |text: &str| {
+            !text.starts_with('.') && text.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c))
+        };
+        let (_, kind) = name.rsplit_once('.')?;
+        let (_, of_kind) = RUN_KINDS.iter().find(|(known, _)| *known == kind)?;
+        let is_run = plain(run) && plain(name);
+        let bytes = is_run.then(|| fs::read(self.runs().join(run).join(name)).ok())??;
+        Some((bytes, of_kind))
+    }
+}
+
+/// A name without folders as letters, digits, - and _, and how it ends; `None` of what ends as no picture does.
+fn parted(name: &str) -> Option<(String, String)> {
+    let name = name.rsplit(['/', '\\']).next()?;
+    let (stem, kind) = name.rsplit_once('.')?;
+    let kind = kind.to_ascii_lowercase();
+    KINDS.iter().find(|(known, _)| *known == kind)?;
+    let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' || c == '_' { c } else { '-' };
+    let stem: String = stem.chars().map(plain).take(MOST_LETTERS).collect();
+    let stem = stem.trim_matches('-');
+    Some((if stem.is_empty() { "picture".to_owned() } else { stem.to_owned() }, kind))
+}
+
+fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::failed(
+        "cannot-write",
+        format!("cannot make {}: {error}; check the name and the permissions", path.display()),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_without_folders_and_end_as_pictures_do() {
+        let named = |name: &str| parted(name).map(|(stem, kind)| format!("{stem}.{kind}"));
+        assert_eq!(named("My house (2).PNG").as_deref(), Some("My-house--2.png"));
+        assert_eq!(named("../../etc/passwd.svg").as_deref(), Some("passwd.svg"));
+        assert_eq!(named(r"C:\x\y.dxf").as_deref(), Some("y.dxf"));
+        assert_eq!(named("....png").as_deref(), Some("picture.png"));
+        assert_eq!(named("passwd"), None);
+        assert_eq!(named("x.sh"), None);
+    }
+}

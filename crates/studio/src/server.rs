@@ -1,0 +1,213 @@
+//! What is asked by HTTP, and answered.
+
+use std::sync::Arc;
+
+use axum::body::Bytes;
+use axum::extract::{DefaultBodyLimit, Path, Query, State};
+use axum::http::header::{
+    ACCEPT_ENCODING, CACHE_CONTROL, CONTENT_ENCODING, CONTENT_SECURITY_POLICY, CONTENT_TYPE, ETAG,
+    IF_NONE_MATCH, VARY,
+};
+use axum::http::{HeaderMap, StatusCode};
+use axum::middleware::from_fn_with_state;
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+use tokio::task::spawn_blocking;
+use tracelight_task::{Failure, Status};
+
+use crate::assets::packed;
+use crate::desk::Desk;
+use crate::folder::{EXAMPLES, MOST_BYTES};
+use crate::guard::{Port, SHOWN, guard};
+use crate::tasks::failure_json;
+
+/// Everything there is, for a server at that port.
+pub(crate) fn router(desk: Arc<Desk>, port: u16) -> Router {
+    let api = Router::new()
+        .route("/about", get(about))
+        .route("/explain/{code}", get(explain))
+        .route("/pictures", get(pictures).post(add).layer(DefaultBodyLimit::max(MOST_BYTES)))
+        .route("/pictures/{id}", get(picture))
+        .route("/plans", post(plan))
+        .route("/plans/{id}/points", get(points))
+        .route("/jobs", post(trace))
+        .route("/jobs/current", get(job))
+        .route("/stop", post(stop))
+        .route("/runs", get(runs))
+        .route("/runs/{run}/files/{name}", get(run_file));
+    Router::new()
+        .route("/", get(|headers: HeaderMap| async move { asset("index.html", &headers) }))
+        .route(
+            "/page/{name}",
+            get(|Path(name): Path<String>, headers: HeaderMap| async move { asset(&name, &headers) }),
+        )
+        .nest("/api/v1", api)
+        .fallback(|| async { missing("page") })
+        .layer(DefaultBodyLimit::max(1 << 16))
+        .layer(from_fn_with_state(Port(port), guard))
+        .with_state(desk)
+}
+
+/// A failure as the command line's `--json` has it.
+struct Refused(Failure);
+
+impl IntoResponse for Refused {
+    fn into_response(self) -> Response {
+        let Self(failure) = self;
+        let status = match (failure.code, failure.status) {
+            ("busy", _) => StatusCode::CONFLICT,
+            (_, Status::Usage) => StatusCode::BAD_REQUEST,
+            (_, Status::Interrupted) => StatusCode::CONFLICT,
+            (_, Status::Failed | Status::Fault) => StatusCode::UNPROCESSABLE_ENTITY,
+        };
+        (status, Json(json!({ "error": failure_json(&failure) }))).into_response()
+    }
+}
+
+fn missing(what: &str) -> Response {
+    let failure = Failure::usage("unreadable", format!("there is no such {what} in the studio"));
+    (StatusCode::NOT_FOUND, Json(json!({ "error": failure_json(&failure) }))).into_response()
+}
+
+type Shared = State<Arc<Desk>>;
+
+/// Does work that computes or reads files beside what answers.
+async fn beside<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+) -> Result<T, Refused> {
+    let done = spawn_blocking(work).await;
+    done.unwrap_or_else(|_| {
+        Err(Failure::failed("internal", "the work ended in a way that it must not: please tell us"))
+    })
+    .map_err(Refused)
+}
+
+async fn about(State(desk): Shared) -> Json<Value> {
+    Json(json!({
+        "name": "tracelight", "version": env!("CARGO_PKG_VERSION"), "folder": desk.folder.dir().to_string_lossy(),
+        "simulated": true, "examples": EXAMPLES.map(|(name, _)| name),
+    }))
+}
+
+async fn explain(State(desk): Shared, Path(code): Path<String>) -> Result<Json<Value>, Refused> {
+    // a word, and no flag
+    let code = code.trim_start_matches('-').to_owned();
+    beside(move || desk.ask(&["explain", "--json", "--", &code])).await.map(Json)
+}
+
+async fn pictures(State(desk): Shared) -> Result<Json<Value>, Refused> {
+    beside(move || Ok(desk.folder.listed())).await.map(|all| Json(json!({ "pictures": all })))
+}
+
+#[derive(Deserialize)]
+struct Named {
+    name: String,
+}
+
+async fn add(
+    State(desk): Shared,
+    Query(Named { name }): Query<Named>,
+    bytes: Bytes,
+) -> Result<Json<Value>, Refused> {
+    beside(move || desk.folder.add(&name, &bytes)).await.map(|id| Json(json!({ "id": id })))
+}
+
+async fn picture(State(desk): Shared, Path(id): Path<String>) -> Result<Response, Refused> {
+    let found = beside(move || Ok(desk.folder.picture_bytes(&id))).await?;
+    Ok(found.map_or_else(|| missing("picture"), shown))
+}
+
+/// Something of the folder.
+fn shown((bytes, kind): (Vec<u8>, &'static str)) -> Response {
+    ([(CONTENT_TYPE, kind), (CONTENT_SECURITY_POLICY, SHOWN), (CACHE_CONTROL, "no-cache")], bytes)
+        .into_response()
+}
+
+/// What a page asks to be planned or traced.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Asked {
+    picture: String,
+    #[serde(default)]
+    flags: Map<String, Value>,
+    /// Which page asks.
+    #[serde(default)]
+    page: String,
+}
+
+/// Reads a request, or says what is wrong with it.
+fn asked(bytes: &[u8]) -> Result<Asked, Refused> {
+    serde_json::from_slice(bytes).map_err(|e| {
+        let message = format!("a plan or a job is asked for by {{\"picture\": ID, \"flags\": {{…}}}}: {e}");
+        Refused(Failure::usage("usage", message))
+    })
+}
+
+async fn plan(State(desk): Shared, bytes: Bytes) -> Result<Json<Value>, Refused> {
+    let Asked { picture, flags, page } = asked(&bytes)?;
+    beside(move || desk.plan(&page, &picture, &flags)).await.map(Json)
+}
+
+async fn points(State(desk): Shared, Path(id): Path<u64>) -> Response {
+    match desk.points(id) {
+        Some(bytes) => {
+            ([(CONTENT_TYPE, "application/octet-stream"), (CACHE_CONTROL, "no-store")], bytes.to_vec())
+                .into_response()
+        }
+        None => missing("plan"),
+    }
+}
+
+async fn trace(State(desk): Shared, bytes: Bytes) -> Result<(StatusCode, Json<Value>), Refused> {
+    let Asked { picture, flags, .. } = asked(&bytes)?;
+    let (begun, run) = beside(move || desk.trace(&picture, &flags)).await?;
+    // it goes on when nobody looks any more
+    drop(spawn_blocking(run));
+    Ok((StatusCode::ACCEPTED, Json(begun)))
+}
+
+async fn job(State(desk): Shared) -> Json<Value> {
+    Json(json!({ "job": desk.job() }))
+}
+
+/// Never refused, whatever is sent with it.
+async fn stop(State(desk): Shared) -> Json<Value> {
+    Json(json!({ "stopped": desk.stop() }))
+}
+
+async fn runs(State(desk): Shared) -> Result<Json<Value>, Refused> {
+    let folder = desk.folder.runs().to_string_lossy().into_owned();
+    beside(move || desk.ask(&["runs", &folder, "--json"])).await.map(Json)
+}
+
+async fn run_file(
+    State(desk): Shared,
+    Path((run, name)): Path<(String, String)>,
+) -> Result<Response, Refused> {
+    let found = beside(move || Ok(desk.folder.run_file(&run, &name))).await?;
+    Ok(found.map_or_else(|| missing("file"), shown))
+}
+
+/// A file of the page, zipped for who takes it so, or nothing anew for who has it.
+fn asset(name: &str, headers: &HeaderMap) -> Response {
+    let Some(packed) = packed(name) else { return missing("page") };
+    let common = [(ETAG, packed.tag.as_str()), (CACHE_CONTROL, "no-cache"), (VARY, "accept-encoding")];
+    let has = |name, text: &str| {
+        headers.get(name).and_then(|value| value.to_str().ok()).is_some_and(|value| value.contains(text))
+    };
+    if has(IF_NONE_MATCH, &packed.tag) {
+        return (StatusCode::NOT_MODIFIED, common).into_response();
+    }
+    let kind = (CONTENT_TYPE, packed.asset.kind);
+    if has(ACCEPT_ENCODING, "gzip") && !packed.zipped.is_empty() {
+        let zipped = [kind, (CONTENT_ENCODING, "gzip")];
+        return (common, zipped, packed.zipped.clone()).into_response();
+    }
+    (common, [kind], packed.asset.text).into_response()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,88 @@
+//! The page in a browser: a server over the other commands.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::json;
+use tracelight_files as files;
+use tracelight_operator::Bar;
+use tracelight_studio::{Performed, Program, open};
+use tracelight_task::{Failure, Progress, Stop, Task};
+
+use crate::cli::answer::{Answer, PerformsWith, Voice};
+use crate::cli::by_hand::each;
+use crate::cli::trace;
+
+/// Open the studio: a page in the browser where a picture is placed on the wall, planned and traced on the simulated rig
+///
+/// The page is served to this computer alone, until Ctrl-C. Whatever it does is a command line, which it shows; its pictures and runs lie in a folder.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Examples: tracelight studio\n          tracelight studio examples/sign.svg --folder out/studio --no-open"
+)]
+pub(crate) struct StudioArgs {
+    /// A picture or a drawing to begin with
+    picture: Option<String>,
+    /// Port of this computer at which the page is; 0 takes any that is free
+    #[arg(long, value_name = "N", default_value_t = 4460)]
+    port: u16,
+    /// Folder of its pictures and runs, which is made [default: Tracelight in the home folder]
+    #[arg(long, value_name = "DIR")]
+    folder: Option<PathBuf>,
+    /// Do not open a browser
+    #[arg(long)]
+    no_open: bool,
+    /// How long, such as 30s [default: until Ctrl-C]
+    #[arg(long = "for", value_name = "TIME", value_parser = each)]
+    lasts_s: Option<f64>,
+    #[command(flatten)]
+    pub(crate) voice: Voice,
+}
+
+/// The commands that the page has done.
+struct Commands(PerformsWith);
+
+impl Program for Commands {
+    fn perform(
+        &self,
+        arguments: &[String],
+        progress: &dyn Progress,
+        stop: &Stop,
+    ) -> Result<Performed, Failure> {
+        let Answer { json, failure, .. } = (self.0)(arguments, Task { progress, stop })?;
+        Ok(Performed { json, failure })
+    }
+}
+
+pub(crate) fn run(args: &StudioArgs, performs: PerformsWith, stop: &Stop) -> Result<Answer, Failure> {
+    let bar = Bar::new(args.voice.quiet);
+    let folder = folder(args.folder.as_deref())?;
+    let studio = open(args.port, &folder, Box::new(Commands(performs)))?;
+    let mut address = studio.address();
+    if let Some(path) = &args.picture {
+        let id = studio.add(path, &files::read(path)?)?;
+        address.push_str(&format!("#picture={id}"));
+    }
+    bar.say(&format!("the studio is at {address}: Ctrl-C ends it"));
+    if !args.no_open {
+        trace::open(Path::new(&address));
+    }
+    studio.serve(args.lasts_s, stop)?;
+    let json = json!({ "address": address, "folder": folder });
+    Ok(Answer::new(
+        format!("the studio is closed; its pictures and runs are in {}", folder.display()),
+        json.to_string(),
+    ))
+}
+
+/// The folder that was given, or one in the home folder.
+fn folder(given: Option<&Path>) -> Result<PathBuf, Failure> {
+    let home = || std::env::home_dir().map(|home| home.join("Tracelight"));
+    let unknown = || {
+        Failure::usage(
+            "usage",
+            "there is no home folder for the studio's pictures and runs: say where they go with --folder DIR",
+        )
+    };
+    given.map(Path::to_owned).or_else(home).ok_or_else(unknown)
+}
