@@ -1,5 +1,5 @@
 // A browser uses the studio: node studio.mjs ADDRESS, of one that was just opened on an empty folder.
-// The first minute by one click, dragging, typing, undoing, a wrong value, a picture from a file, stopping from within a field; at three widths, on each ground, nothing
+// The first minute by one click, dragging, typing, undoing, a wrong value, what is no picture, a picture from a file, stopping from within a field; at three widths, on each ground, nothing
 // axe finds wrong, nothing wider than the screen, no error of a script, nothing asked of anybody else.
 import { readFileSync } from 'node:fs'
 import { createRequire } from 'node:module'
@@ -62,6 +62,16 @@ const place = async () => {
   await until(page, 'the wrong value is still told', () => document.getElementById('problem').hidden)
   await page.keyboard.press('Shift+ArrowRight')
   check((await value(page, 'offset')) === '10mm,0mm', 'arrows do not move it')
+  // what only the program can read lies where the program has planned it
+  await page.fill('[name=offset]', `1'2",3"`)
+  await page.press('[name=offset]', 'Enter')
+  await until(page, 'feet and inches are not planned', () => /--offset=1'/.test(document.getElementById('command').textContent) && !document.body.classList.contains('waits'))
+  await page.focus('#wall')
+  await page.keyboard.press('ArrowRight')
+  check((await value(page, 'offset')) === '356.6mm,76.2mm', `an arrow takes it elsewhere: ${await value(page, 'offset')}`)
+  await page.setInputFiles('#file', { name: 'none.png', mimeType: 'image/png', buffer: Buffer.from('no picture') })
+  await until(page, 'what is no picture is not refused', () => /none of PNG/.test(document.getElementById('problem').textContent))
+  check((await page.getAttribute('#trace', 'disabled')) !== null && (await page.textContent('#count')) === '–', 'what was shown before is shown as what was chosen')
   await page.setInputFiles('#file', picture)
   await until(page, 'a picture from a file is not planned', () => /sheet/.test(document.getElementById('command').textContent))
   // stopping asks for no focus and no second key

@@ -104,7 +104,7 @@ impl Creep {
         let time_s = Self::SEEN_TICKS * TICK_S;
         let as_now_rad = after(now, time_s).position_rad - now.position_rad;
         let planned_rad = later_rad(Self::SEEN_TICKS) - now.position_rad;
-        if as_now_rad.abs() <= planned_rad.abs() {
+        if as_now_rad.abs() <= planned_rad.abs() && as_now_rad * planned_rad >= 0.0 {
             return **now;
         }
         let acceleration_rad_s2 = 2.0 * (planned_rad - time_s * now.velocity_rad_s) / (time_s * time_s);

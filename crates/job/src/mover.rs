@@ -2,7 +2,7 @@
 
 use tracelight_eye::refused;
 use tracelight_pipeline::Driving;
-use tracelight_rig::{Darkness, Joint, PanTilt, TICK_F64_S};
+use tracelight_rig::{Darkness, Fault, Joint, PanTilt, TICK_F64_S};
 use tracelight_session::{Job, Request, Session, State};
 use tracelight_sim::{Observed, Tick, observed_tick};
 use tracelight_stroke::{Point, Vec2};
@@ -76,6 +76,8 @@ pub struct Mover<'a> {
     driving: &'a Driving,
     task: Task<'a>,
     last: Tick,
+    /// A fault by which counts may have been lost while a stop was looked for.
+    lost: Option<Fault>,
 }
 
 impl<'a> Mover<'a> {
@@ -90,7 +92,7 @@ impl<'a> Mover<'a> {
     ) -> Result<Self, Failure> {
         let mut wall = Session::new(rig);
         let Some(last) = observed_tick(&mut wall) else { return Err(gone()) };
-        let mut mover = Self { wall, driving, task, last };
+        let mut mover = Self { wall, driving, task, last, lost: None };
         mover.settle()?;
         Ok(mover)
     }

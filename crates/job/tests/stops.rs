@@ -97,6 +97,19 @@ fn stops_that_are_others_than_the_rig_file_says_home_nothing() {
 }
 
 #[test]
+fn a_head_that_is_not_homed_or_has_no_encoders_measures_no_stops() {
+    let rig = rig_of("report", RANGE_RAD);
+    let (done, _, homed) = moved(&rig, PanTilt::default(), 1, |mover| mover.find_stops());
+    assert!(done.unwrap_err().code == "unhomed" && !homed);
+    let stepper = rig_of("stepper", RANGE_RAD);
+    let (done, ..) = moved(&stepper, PanTilt::default(), 1, |mover| {
+        mover.home(PanTilt::default())?;
+        mover.find_stops()
+    });
+    assert!(done.unwrap_err().message.contains("without encoders"));
+}
+
+#[test]
 fn a_joint_without_stops_is_said_to_have_none() {
     let mut rig = rig_of("report", RANGE_RAD);
     // its stops are further out than anybody says

@@ -133,6 +133,12 @@ pub struct Placed {
 }
 
 impl Placed {
+    /// Where the sheet's corners lie on the target, m: from its left top one clockwise, unless it is mirrored.
+    #[must_use]
+    pub const fn corners_m(&self) -> [Point; 4] {
+        self.corners_m
+    }
+
     /// A drawing in target metres, of a sheet of that size in units of its own.
     #[must_use]
     pub fn of(drawing: Drawing, (width, height): (f64, f64), target_from_sheet: Affine) -> Self {

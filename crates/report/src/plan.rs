@@ -43,7 +43,10 @@ pub fn plan_json(
     let limits: serde_json::Map<_, _> =
         plan.limit_shares().into_iter().map(|(limit, share)| (key(&limit), share.into())).collect();
     serde_json::json!({
-        "target": { "width_m": placed.size_m.0, "height_m": placed.size_m.1 },
+        "target": {
+            "width_m": placed.size_m.0, "height_m": placed.size_m.1,
+            "corners_m": placed.corners_m().map(|corner| [corner.x, corner.y]),
+        },
         "head": standing,
         "align": placed.align,
         "no_go": placed.left_out,

@@ -6,10 +6,10 @@
  * @typedef {{ id: string, example: boolean, shows: boolean }} Picture
  * @typedef {Record<string, string | boolean>} Flags flags of the command line, with underscores
  * @typedef {{ number: number, length_m: number, lit_from_s: number, lit_to_s: number }} Stroke
- * @typedef {{ target: { width_m: number, height_m: number }, strokes: { count: number, length_m: number }, plan: { duration_s: number },
+ * @typedef {{ target: { width_m: number, height_m: number, corners_m: [number, number][] }, strokes: { count: number, length_m: number }, plan: { duration_s: number },
  *   head: { spot_mm: number, best_distance_m: number, distance_m: number }, sequence: Stroke[] }} PlanFigures
  * @typedef {{ id: number, command: string, plan: PlanFigures, remarks: string[], points: string }} Plan
- * @typedef {{ id: number, run: string, stage: string, done: number, of: number, remarks: string[], over: boolean, answer: any, failure: Failure | null }} Job
+ * @typedef {{ id: number, run: string, picture: string, stage: string, done: number, of: number, remarks: string[], over: boolean, answer: any, failure: Failure | null }} Job
  */
 
 /** A refusal, with what the program says about it. */
@@ -48,8 +48,8 @@ export const pictures = async () => (await json('/pictures')).pictures
 export const add = async (file) => (await json(`/pictures?name=${encodeURIComponent(file.name || 'pasted.png')}`, { method: 'POST', body: file })).id
 /** @param {string} id */
 export const pictureUrl = (id) => `/api/v1/pictures/${encodeURIComponent(id)}`
-/** @param {{ page: string, picture: string, flags: Flags }} asked @returns {Promise<Plan>} */
-export const plan = (asked) => post('/plans', asked)
+/** @param {{ page: string, number: number, picture: string, flags: Flags }} asked @param {AbortSignal} signal @returns {Promise<Plan>} */
+export const plan = (asked, signal) => post('/plans', asked, signal)
 /** @param {{ picture: string, flags: Flags }} asked @returns {Promise<Job>} */
 export const trace = (asked) => post('/jobs', asked)
 /** @returns {Promise<Job | null>} */

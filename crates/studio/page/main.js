@@ -13,6 +13,8 @@ import { degrees, length, offset, plain, time, typed } from './words.js'
 const REST = 150
 /** A way by an arrow key, m. */
 const NUDGE_M = 1e-3
+/** How often a page looks whether another one traces, ms. */
+const LOOK = 1000
 /** In how many seconds a drawing is played while it is traced. */
 const PLAYED_S = 6
 const THEMES = /** @type {const} */ ([['auto', '◐ Auto'], ['light', '○ Light'], ['dark', '● Dark'], ['room', '◍ Dark room']])
@@ -21,10 +23,12 @@ const THEMES = /** @type {const} */ ([['auto', '◐ Auto'], ['light', '○ Light
 const by = (id) => /** @type {T} */ (document.getElementById(id))
 const page = crypto.randomUUID()
 const chosen = new URLSearchParams(location.hash.slice(1)).get('picture')
-const store = new Store({ picture: chosen ?? 'house.png', flags: {} })
+const store = new Store(chosen ? { picture: chosen, flags: {} } : earlier())
 let folder = ''
 /** @type {api.Plan | null} */
 let plan = null
+/** @type {api.Flags} what it was asked by */
+let planFlags = {}
 let tracing = false
 
 const wall = new Wall(by('wall'), (box, done) => {
@@ -46,45 +50,92 @@ function placed(box) {
   return flags
 }
 
-/** Where the drawing is to be by its flags, as far as the page can tell. @param {api.Flags} flags @returns {import('./wall.js').Box} */
+/** What was asked for when this page was last left. @returns {import('./store.js').Asked} */
+function earlier() {
+  try {
+    const { picture, flags } = JSON.parse(sessionStorage.getItem('asked') ?? '')
+    return { picture, flags }
+  } catch {
+    return { picture: 'house.png', flags: {} }
+  }
+}
+
+/** Where the planned drawing lies. @param {api.Plan} of @returns {import('./wall.js').Box} */
+function planned(of) {
+  const { corners_m: corners, width_m: width, height_m: height } = of.plan.target
+  const [x, y] = [0, 1].map((n) => corners.reduce((sum, corner) => sum + corner[n], 0) / 4)
+  const [up_x, up_y] = [corners[0][0] - corners[3][0], corners[0][1] - corners[3][1]]
+  return { x, y, turn: Math.atan2(-up_x, up_y), width, height }
+}
+
+/** Where the drawing is to be by its flags: what the page cannot read lies where it was planned. @param {api.Flags} flags @returns {import('./wall.js').Box} */
 function boxOf(flags) {
-  const [x, y] = offset(String(flags.offset ?? '')) ?? [0, 0]
-  const turn = ((degrees(String(flags.rotate ?? '')) ?? 0) * Math.PI) / 180
-  const { width_m: width, height_m: height } = plan?.plan.target ?? { width_m: 0.6096, height_m: 0.4572 }
-  return { x, y, turn, width, height }
+  const known = plan && JSON.stringify(flags) === JSON.stringify(planFlags)
+  const was = plan ? planned(plan) : { x: 0, y: 0, turn: 0, width: 0.6096, height: 0.4572 }
+  if (known) return was
+  const [x, y] = offset(String(flags.offset ?? '')) ?? [was.x, was.y]
+  const degree = degrees(String(flags.rotate ?? ''))
+  return { ...was, x, y, turn: degree === null ? was.turn : (degree * Math.PI) / 180 }
 }
 
 let asked = 0
 let timer = 0
+let before = new AbortController()
 
 /** Plans what is asked for, once it rests. @param {number} [rest] */
 function planSoon(rest = REST) {
   clearTimeout(timer)
   const number = ++asked
-  by('duration').dataset.old = ''
+  before.abort()
+  before = new AbortController()
+  const { signal } = before
+  document.body.classList.add('waits')
+  by('trace').setAttribute('disabled', '')
+  if (plan === null) by('hint').textContent = 'Planning…'
   timer = window.setTimeout(async () => {
     try {
-      const made = await api.plan({ page, ...store.asked })
+      const { flags } = store.asked
+      const made = await api.plan({ page, number, ...store.asked }, signal)
       const points = await api.points(made.points)
-      if (number === asked) show(made, points)
+      if (number === asked) show(made, points, flags)
     } catch (error) {
-      if (number === asked) problem(error)
+      if (number === asked) refused(error)
     }
   }, rest)
 }
 
-/** @param {api.Plan} made @param {api.Points} points */
-function show(made, points) {
+/** Nothing is planned: what is shown is of nothing. */
+function nothing() {
+  plan = null
+  wall.show(null, { x: 0, y: 0, turn: 0, width: 0.6096, height: 0.4572 })
+  timeline.of(0, 0)
+  for (const id of ['size', 'count', 'length', 'duration', 'spot']) by(id).textContent = '–'
+  by('command').textContent = ''
+  by('strokes').replaceChildren()
+  by('remarks').hidden = true
+}
+
+/** What was wished for cannot be planned. @param {unknown} error */
+function refused(error) {
+  if (plan === null) by('hint').textContent = 'Nothing to show.'
+  problem(error)
+}
+
+/** @param {api.Plan} made @param {api.Points} points @param {api.Flags} flags */
+function show(made, points, flags) {
   problem(null)
   plan = made
-  wall.show(points, boxOf(store.asked.flags))
+  planFlags = flags
+  by('hint').textContent = ''
+  document.body.classList.remove('waits')
+  setTracing(tracing)
+  wall.show(points, planned(made))
   timeline.of(points.rows, made.plan.plan.duration_s)
   const { target, strokes, plan: timed, head } = made.plan
   by('size').textContent = `${length(target.width_m)} × ${length(target.height_m)}`
   by('count').textContent = String(strokes.count)
   by('length').textContent = length(strokes.length_m)
   by('duration').textContent = time(timed.duration_s)
-  delete by('duration').dataset.old
   by('spot').textContent = `${plain(head.spot_mm, 1)} mm wide`
   by('command').textContent = made.command
   const remarks = by('remarks')
@@ -106,7 +157,8 @@ function problem(error) {
   place.replaceChildren()
   if (error === null) return fields.blame('')
   const failure = error instanceof api.Refusal ? error.failure : { code: 'internal', message: String(error) }
-  place.append(element('strong', { text: failure.message }))
+  // names without the folder that they are in
+  place.append(element('strong', { text: failure.message.replaceAll(`${folder}/pictures/`, '') }))
   // of a wrong value there is no more to be told than its message does
   if (failure.help && failure.code !== 'usage') place.append(element('p', { text: failure.help }))
   fields.blame(failure.message)
@@ -124,13 +176,30 @@ async function trace() {
       timeline.rest()
       timeline.play(Math.max(1, plan.plan.plan.duration_s / PLAYED_S))
     }
-    const ended = await follow((job) => lamp(`◔ ${words(job)}`))
-    if (ended) showResult(by('result'), ended)
-    by('result').scrollIntoView({ block: 'nearest' })
   } catch (error) {
     problem(error)
-  } finally {
+    // another page traces: this one shows how far it is
+    if (!(error instanceof api.Refusal) || error.failure.code !== 'busy') return setTracing(false)
+  }
+  await followed()
+}
+
+/** Follows the job in hand to its end, and shows how it ended. */
+async function followed() {
+  try {
+    const ended = await follow((job) => lamp(`◔ ${words(job)}`))
     setTracing(false)
+    // light that is not there does not go on
+    if (ended?.failure) timeline.rest()
+    if (ended && ended.picture === store.asked.picture) {
+      showResult(by('result'), ended)
+      by('result').scrollIntoView({ block: 'nearest' })
+    }
+  } catch (error) {
+    problem(error)
+    setTracing(false)
+    // nobody says so any more
+    lamp('? Unknown')
   }
 }
 
@@ -143,7 +212,8 @@ function words(job) {
 /** @param {boolean} is */
 function setTracing(is) {
   tracing = is
-  by('trace').toggleAttribute('disabled', is)
+  // what cannot be planned cannot be traced
+  by('trace').toggleAttribute('disabled', is || plan === null || document.body.classList.contains('waits'))
   if (!is) lamp('● Dark')
 }
 
@@ -176,7 +246,8 @@ async function take(file) {
 
 /** @param {string} picture */
 function choose(picture) {
-  by('result').hidden = true
+  problem(null)
+  nothing()
   wall.first = true
   // what was asked of one picture is not asked of another, but where the head stands
   const { distance, rig } = store.asked.flags
@@ -200,16 +271,18 @@ function view() {
   const runs = location.hash === '#runs'
   by('place').hidden = runs
   by('runs').hidden = !runs
-  by('to-place').toggleAttribute('aria-current', !runs)
-  by('to-runs').toggleAttribute('aria-current', runs)
-  if (runs) showRuns(by('run-list'), by('runs-where'), folder).catch(problem)
+  for (const [id, is] of /** @type {[string, boolean][]} */ ([['to-place', !runs], ['to-runs', runs]])) {
+    if (is) by(id).setAttribute('aria-current', 'page')
+    else by(id).removeAttribute('aria-current')
+  }
+  if (runs) showRuns(by('run-list'), by('runs-where'), `${folder}/runs`).catch(problem)
 }
 
 /** @param {KeyboardEvent} event */
 function key(event) {
   if (event.key === 'Escape') return void stop()
   const target = /** @type {HTMLElement} */ (event.target)
-  const types = target.closest('input[type=text], select, textarea') !== null
+  const types = target.closest('input:not([type=range]), select, textarea') !== null
   const letter = event.key.toLowerCase()
   if ((event.ctrlKey || event.metaKey) && !types && (letter === 'z' || letter === 'y')) {
     // a browser would undo what was typed, and go there
@@ -243,12 +316,33 @@ function theme(name) {
   const [known, label] = THEMES[Math.max(0, at)]
   document.documentElement.dataset.theme = known
   by('theme').textContent = label
-  localStorage.setItem('theme', known)
+  kept()?.setItem('theme', known)
   wall.redraw()
+}
+
+/** Keeps what is asked for until the page is loaded again. @param {import('./store.js').Asked} asked */
+function keep(asked) {
+  try {
+    sessionStorage.setItem('asked', JSON.stringify(asked))
+  } catch {
+    // a browser that keeps nothing begins anew
+  }
+}
+
+/** Where this browser keeps what belongs to it; null where it keeps nothing. */
+function kept() {
+  try {
+    return localStorage
+  } catch {
+    return null
+  }
 }
 
 store.watch((asked) => {
   fields.show(asked.flags)
+  // what was traced was another wish
+  by('result').hidden = true
+  keep(asked)
   wall.place({ ...boxOf(asked.flags), width: wall.box.width, height: wall.box.height })
   for (const button of by('pictures').querySelectorAll('button')) button.setAttribute('aria-pressed', String(button.title === asked.picture))
   by('name').textContent = asked.picture
@@ -258,11 +352,18 @@ store.watch((asked) => {
 by('trace').addEventListener('click', trace)
 by('stop').addEventListener('click', stop)
 by('open').addEventListener('click', () => by('file').click())
-by('file').addEventListener('change', () => take(/** @type {HTMLInputElement} */ (by('file')).files?.[0]))
+by('file').addEventListener('change', () => {
+  const input = /** @type {HTMLInputElement} */ (by('file'))
+  take(input.files?.[0])
+  // the same file may be taken again once it was changed
+  input.value = ''
+})
 by('copy').addEventListener('click', () => navigator.clipboard?.writeText(by('command').textContent ?? ''))
 by('zoom-in').addEventListener('click', () => wall.zoom(1.25))
 by('zoom-out').addEventListener('click', () => wall.zoom(0.8))
 by('zoom-fit').addEventListener('click', () => wall.fit())
+by('undo').addEventListener('click', () => store.undo())
+by('redo').addEventListener('click', () => store.redo())
 by('theme').addEventListener('click', () => {
   const at = THEMES.findIndex(([name]) => name === document.documentElement.dataset.theme)
   theme(THEMES[(at + 1) % THEMES.length][0])
@@ -277,16 +378,20 @@ addEventListener('drop', (event) => {
 })
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => wall.redraw())
 
-theme(localStorage.getItem('theme') ?? 'auto')
-fields.show({})
+theme(kept()?.getItem('theme') ?? 'auto')
+fields.show(store.asked.flags)
 by('name').textContent = store.asked.picture
 planSoon(0)
 list().catch(problem)
 api.about().then((told) => (folder = told.folder)).then(view, problem)
-api.job().then((job) => {
-  // one that goes on when the page is loaded again
-  if (job && !job.over) {
-    setTracing(true)
-    follow((now) => lamp(`◔ ${words(now)}`)).then((ended) => ended && showResult(by('result'), ended)).catch(problem).finally(() => setTracing(false))
-  }
-}, problem)
+/** Looks whether somebody traces: another page, or this one before it was loaded again. */
+async function look() {
+  if (tracing) return
+  const job = await api.job().catch(() => null)
+  if (!job || job.over || tracing) return
+  setTracing(true)
+  await followed()
+  if (plan) problem(null)
+}
+look()
+setInterval(look, LOOK)

@@ -33,15 +33,17 @@ export async function follow(told) {
 export function showResult(card, ended) {
   card.hidden = false
   card.replaceChildren()
-  const { answer, failure, run } = ended
+  const { answer, failure, run, picture } = ended
+  card.classList.toggle('failed', failure !== null)
   if (failure) {
     const stopped = failure.code === 'interrupted'
-    card.append(element('h2', { text: stopped ? 'Stopped' : 'It did not end well' }), element('p', { text: stopped ? 'The head is dark. What was drawn until then is kept.' : failure.message }))
-    if (!stopped && failure.help) card.append(element('p', { class: 'under', text: failure.help }))
+    card.append(element('h2', { text: stopped ? 'Stopped' : 'It did not end well' }), element('p', { text: stopped ? 'The head is dark. Runs has what was drawn until then.' : failure.message }))
+    if (!stopped && failure.help && failure.code !== 'usage') card.append(element('p', { class: 'under', text: failure.help }))
   }
-  if (!answer?.tracking) return
+  // of a part of it no error tells how exact the whole would be
+  if (failure || !answer?.tracking) return
   const { tracking, plan, target } = answer
-  if (!failure) card.append(element('h2', { text: 'Traced on the simulated head' }))
+  card.append(element('h2', { text: `${picture}: traced on the simulated head` }))
   card.append(
     element('img', { src: runFile(run, 'trace.png'), alt: 'What a camera with an open shutter would have seen of the wall', width: '320' }),
     element('p', { class: 'error-figure' }, element('strong', { text: `${plain(tracking.max_mm, 2)} mm` }), ' off at most, ', element('strong', { text: `${plain(tracking.rms_mm, 3)} mm` }), ' rms'),
@@ -54,14 +56,15 @@ export function showResult(card, ended) {
 export async function showRuns(list, where, folder) {
   const all = await runs()
   where.textContent = all.length === 0 ? 'There are none yet: trace a picture.' : `They lie in ${folder}.`
-  list.replaceChildren(...all.map(card))
+  list.replaceChildren(...all.reverse().map(card))
 }
 
 /** @param {any} run */
 function card(run) {
   const id = run.folder.split(/[\\/]/).pop()
-  const off = run.max_mm === null || run.max_mm === undefined ? '' : `${plain(run.max_mm, 2)} mm off at most`
-  const came = run.finished ? '' : 'not finished; '
+  const off = !run.finished || run.max_mm === null || run.max_mm === undefined ? '' : `${plain(run.max_mm, 2)} mm off at most`
+  const { stroke, strokes } = run.progress ?? { stroke: 0, strokes: run.strokes }
+  const came = run.finished ? '' : `not finished: stroke ${stroke} of ${strokes}`
   const size = run.width_m ? `${length(run.width_m)} × ${length(run.height_m)}, ${run.strokes} strokes, ${time(run.duration_s ?? 0)}` : ''
   return element(
     'li',

@@ -12,6 +12,8 @@ export class Timeline {
     this.seconds = 0
     this.playing = false
     this.row = -1
+    /** The frame that is drawn next while it plays. */
+    this.next = 0
     parts.range.addEventListener('input', () => {
       this.#stop()
       this.#set(Number(parts.range.value))
@@ -45,6 +47,7 @@ export class Timeline {
   /** Plays on from where it is, or from the beginning. @param {number} rate */
   play(rate) {
     if (this.rows < 2) return
+    this.#stop()
     this.playing = true
     this.parts.play.textContent = '❚❚'
     this.parts.play.setAttribute('aria-label', 'Pause')
@@ -61,12 +64,13 @@ export class Timeline {
         return
       }
       this.#set(Math.floor(row))
-      requestAnimationFrame(frame)
+      this.next = requestAnimationFrame(frame)
     }
-    requestAnimationFrame(frame)
+    this.next = requestAnimationFrame(frame)
   }
 
   #stop() {
+    cancelAnimationFrame(this.next)
     this.playing = false
     this.parts.play.textContent = '▶'
     this.parts.play.setAttribute('aria-label', 'Play')

@@ -40,6 +40,8 @@ export class Wall {
     /** @type {View} */
     this.view = { x: 0, y: 0, scale: 600 }
     this.tick = -1
+    /** @type {number[] | null} */
+    this.bounds = null
     /** @type {{ image: HTMLCanvasElement, left: number, top: number, scale: number } | null} */
     this.bitmap = null
     /** @type {{ kind: string, from: [number, number], box: Box, view: View, far: boolean } | null} */
@@ -64,6 +66,7 @@ export class Wall {
     const fits = this.points === null || this.#isSeen(this.planned)
     this.points = points
     this.planned = { ...box }
+    this.bounds = points ? boundsOf(points, this.planned) : null
     if (!this.drag) this.box = { ...box }
     this.bitmap = null
     this.lit.forget()
@@ -127,10 +130,20 @@ export class Wall {
 
   #resized() {
     if (this.canvas.clientWidth === 0) return
+    const fits = this.points === null || this.#isSeen(this.box)
+    this.#sharpen()
+    // who has looked closer goes on looking there
+    if (fits) this.fit()
+    this.dirty = true
+  }
+
+  /** Gives the canvas a pixel for each of the screen's; another screen has others. */
+  #sharpen() {
     const ratio = window.devicePixelRatio || 1
-    this.canvas.width = Math.round(this.canvas.clientWidth * ratio)
-    this.canvas.height = Math.round(this.canvas.clientHeight * ratio)
-    this.fit()
+    const [wide, high] = [Math.round(this.canvas.clientWidth * ratio), Math.round(this.canvas.clientHeight * ratio)]
+    if (this.canvas.width === wide && this.canvas.height === high) return
+    this.canvas.width = wide
+    this.canvas.height = high
   }
 
   /** Pixels of a place. @param {[number, number]} at @returns {[number, number]} */
@@ -166,6 +179,7 @@ export class Wall {
     this.dirty = false
     // another view is shown
     if (this.canvas.clientWidth === 0) return
+    this.#sharpen()
     const { context, canvas } = this
     const ratio = window.devicePixelRatio || 1
     const colours = coloursOf(canvas)
@@ -174,7 +188,7 @@ export class Wall {
     this.#grid(colours)
     if (this.points) {
       const still = this.drag === null && same(this.box, this.planned)
-      if (!this.bitmap || (this.drag === null && off(this.bitmap.scale, this.view.scale))) this.#paint(colours)
+      if (!this.bitmap || (this.drag === null && off(this.bitmap.scale, this.#scale()))) this.#paint(colours)
       context.save()
       this.#carry(context)
       if (this.bitmap) {
@@ -186,7 +200,7 @@ export class Wall {
       context.restore()
       if (this.tick >= 0 && still) this.#light(colours)
     }
-    this.#handles(colours)
+    if (this.points) this.#handles(colours)
     this.#rulers(colours)
   }
 
@@ -203,9 +217,8 @@ export class Wall {
   #paint(colours) {
     const points = /** @type {Points} */ (this.points)
     const ratio = window.devicePixelRatio || 1
-    const [left, top, right, low] = boundsOf(points, this.planned)
-    const fits = MOST_PIXELS / Math.max(right - left, low - top, 1e-6)
-    const scale = Math.min(this.view.scale * ratio, fits)
+    const [left, top, right, low] = this.bounds ?? (this.bounds = boundsOf(points, this.planned))
+    const scale = this.#scale()
     const image = document.createElement('canvas')
     const pad = 3
     image.width = Math.ceil((right - left) * scale) + 2 * pad
@@ -214,6 +227,12 @@ export class Wall {
     context.translate(pad - left * scale, pad - top * scale)
     drawPlan(context, points, this.planned, scale, ratio, colours)
     this.bitmap = { image, left: left - pad / scale, top: top - pad / scale, scale }
+  }
+
+  /** Pixels a metre of the picture of the plan: as this zoom has them, as far as it fits. */
+  #scale() {
+    const [left, top, right, low] = this.bounds ?? [0, 0, 1, 1]
+    return Math.min(this.view.scale * (window.devicePixelRatio || 1), MOST_PIXELS / Math.max(right - left, low - top, 1e-6))
   }
 
   /** What is drawn until now, and the spot. @param {Colours} colours */
@@ -344,6 +363,7 @@ export class Wall {
 
   /** What lies under a pixel. @param {[number, number]} at */
   #under([px, py]) {
+    if (!this.points) return 'pan'
     const near = (/** @type {[number, number]} */ [x, y], /** @type {number} */ far) => Math.hypot(px - x, py - y) < far
     if (near(this.#ring(), 16)) return 'turn'
     if (this.#corners(this.box).some((corner) => near(this.#pixels(corner), 16))) return 'size'
@@ -360,7 +380,15 @@ export class Wall {
     this.canvas.setPointerCapture(event.pointerId)
     this.fingers.set(event.pointerId, at)
     const kind = this.fingers.size > 1 ? 'pinch' : this.#under(at)
+    this.#takeBack()
     this.drag = { kind, from: kind === 'pinch' ? this.#pinch() : at, box: { ...this.box }, view: { ...this.view }, far: false }
+  }
+
+  /** What a drag has moved that does not end as one is put back. */
+  #takeBack() {
+    if (this.drag === null || !['move', 'size', 'turn'].includes(this.drag.kind)) return
+    this.box = this.drag.box
+    this.moved(this.box, false)
   }
 
   /** The fingers' middle and how far they are apart. @returns {[number, number]} */
@@ -400,7 +428,8 @@ export class Wall {
   /** @param {PointerEvent} event */
   #end(event) {
     this.fingers.delete(event.pointerId)
-    const drag = this.drag
+    if (event.type === 'pointercancel') this.#takeBack()
+    const drag = event.type === 'pointercancel' ? null : this.drag
     this.drag = null
     this.dirty = true
     if (drag?.far && ['move', 'size', 'turn'].includes(drag.kind)) this.moved(this.box, true)
@@ -412,8 +441,7 @@ function same(a, b) {
   return Math.hypot(a.x - b.x, a.y - b.y) < SPAN_M && Math.abs(a.turn - b.turn) < 1e-3 && Math.abs(a.width - b.width) < SPAN_M
 }
 
-/** Whether a picture for one zoom is too coarse or too fine for another. @param {number} of @param {number} scale */
+/** Whether a picture of so many pixels a metre is too coarse or too fine for another. @param {number} of @param {number} scale */
 function off(of, scale) {
-  const ratio = of / (scale * (window.devicePixelRatio || 1))
-  return ratio < 0.8 || ratio > 2.5
+  return of / scale < 0.8 || of / scale > 2.5
 }

@@ -54,5 +54,6 @@ export function clock(s) {
 
 /** A time for people. @param {number} s */
 export function time(s) {
-  return s < 60 ? `${plain(s, 1)} s` : `${Math.floor(s / 60)} min ${Math.round(s % 60)} s`
+  const all = Math.round(s)
+  return s < 59.95 ? `${plain(s, 1)} s` : `${Math.floor(all / 60)} min ${all % 60} s`
 }

@@ -5,6 +5,7 @@ use std::fs;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use axum::body::Bytes;
 use serde_json::{Map, Value, json};
 use tracelight_task::Failure;
 
@@ -12,7 +13,7 @@ use crate::flags::{arguments, typed};
 use crate::folder::Folder;
 use crate::points;
 use crate::program::{Performed, Program};
-use crate::tasks::{Ended, Work};
+use crate::tasks::{AtLast, Ended, Work};
 
 /// Plans whose points are kept for pages to fetch.
 const KEPT_PLANS: usize = 16;
@@ -24,9 +25,11 @@ pub(crate) struct Desk {
     pub(crate) program: Box<dyn Program>,
     pub(crate) folder: Folder,
     next: AtomicU64,
-    plans: Mutex<VecDeque<(u64, Arc<Vec<u8>>)>>,
-    /// What each page has planned now.
-    asked: Mutex<HashMap<String, Arc<Work>>>,
+    plans: Mutex<VecDeque<(u64, Bytes)>>,
+    /// What each page asked for last, and the number it gave that.
+    asked: Mutex<HashMap<String, (u64, Arc<Work>)>>,
+    /// Held while a plan is made: each takes all of the processor.
+    planning: Mutex<()>,
     job: Mutex<Option<Job>>,
 }
 
@@ -35,6 +38,7 @@ pub(crate) struct Desk {
 struct Job {
     work: Arc<Work>,
     run: String,
+    picture: String,
 }
 
 fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -49,6 +53,7 @@ impl Desk {
             next: AtomicU64::new(1),
             plans: Mutex::default(),
             asked: Mutex::default(),
+            planning: Mutex::default(),
             job: Mutex::default(),
         }
     }
@@ -66,8 +71,27 @@ impl Desk {
             ));
         };
         let mut command = vec![name.to_owned(), path.to_string_lossy().into_owned()];
-        command.extend(arguments(flags)?);
+        command.extend(arguments(flags, &self.program.rigs())?);
         Ok(command)
+    }
+
+    /// Takes note of what a page asks for, by the number that it gives its wishes, and ends what it asked for before; a page without a name asks for everything at once.
+    fn wish(&self, (page, number): (&str, u64), work: &Arc<Work>) -> Result<(), Failure> {
+        if page.is_empty() {
+            return Ok(());
+        }
+        let mut asked = locked(&self.asked);
+        if asked.len() >= MOST_PAGES {
+            asked.retain(|_, (_, work)| !work.is_over());
+        }
+        if let Some((last, before)) = asked.get(page) {
+            if *last > number {
+                return Err(Failure::interrupted());
+            }
+            before.stop.want();
+        }
+        asked.insert(page.to_owned(), (number, Arc::clone(work)));
+        Ok(())
     }
 
     /// Plans a picture. What the same page asked for before and is not done is ended.
@@ -76,22 +100,18 @@ impl Desk {
     /// What the program says; `interrupted` where the page has asked for another since.
     pub(crate) fn plan(
         &self,
-        page: &str,
+        page: (&str, u64),
         picture: &str,
         flags: &Map<String, Value>,
     ) -> Result<Value, Failure> {
         let command = self.command("plan", picture, flags)?;
         let work = self.work();
-        {
-            let mut asked = locked(&self.asked);
-            if asked.len() >= MOST_PAGES {
-                asked.retain(|_, work| !work.is_over());
-            }
-            if let Some(before) = asked.insert(page.to_owned(), Arc::clone(&work)) {
-                before.stop.want();
-            }
-        }
-        let table = self.folder.dir().join(format!(".plan-{}.csv", work.id));
+        let _ended = AtLast(Arc::clone(&work));
+        self.wish(page, &work)?;
+        let _planning = locked(&self.planning);
+        // somebody may have wished for another while this one waited
+        work.stop.check()?;
+        let table = self.folder.table(work.id);
         let out = ["-o".to_owned(), table.to_string_lossy().into_owned(), "--json".to_owned()];
         let all: Vec<String> = command.iter().cloned().chain(out).collect();
         let planned = self.program.perform(&all, &*work, &work.stop);
@@ -103,7 +123,7 @@ impl Desk {
         let bytes = points::binary(&text, &answer)
             .ok_or_else(|| Failure::failed("internal", "the plan's table cannot be read"))?;
         let mut plans = locked(&self.plans);
-        plans.push_back((work.id, Arc::new(bytes)));
+        plans.push_back((work.id, Bytes::from(bytes)));
         if plans.len() > KEPT_PLANS {
             plans.pop_front();
         }
@@ -114,8 +134,8 @@ impl Desk {
     }
 
     /// A plan's points.
-    pub(crate) fn points(&self, id: u64) -> Option<Arc<Vec<u8>>> {
-        locked(&self.plans).iter().find(|(known, _)| *known == id).map(|(_, bytes)| Arc::clone(bytes))
+    pub(crate) fn points(&self, id: u64) -> Option<Bytes> {
+        locked(&self.plans).iter().find(|(known, _)| *known == id).map(|(_, bytes)| bytes.clone())
     }
 
     /// Begins to trace a picture on the simulated rig; what is to be run then.
@@ -128,21 +148,26 @@ impl Desk {
         flags: &Map<String, Value>,
     ) -> Result<(Value, impl FnOnce() + Send + use<>), Failure> {
         let mut command = self.command("trace", picture, flags)?;
-        let mut job = locked(&self.job);
-        if job.as_ref().is_some_and(|job| !job.work.is_over()) {
-            return Err(Failure::failed(
-                "busy",
-                "a picture is being traced: stop it, or wait until it is done",
-            ));
-        }
-        let (run, dir) = self.folder.begin_run(picture)?;
-        command.extend(["--out".to_owned(), dir.to_string_lossy().into_owned(), "--json".to_owned()]);
         let work = self.work();
-        *job = Some(Job { work: Arc::clone(&work), run });
-        drop(job);
+        {
+            let mut job = locked(&self.job);
+            if job.as_ref().is_some_and(|job| !job.work.is_over()) {
+                let message = "a picture is being traced: stop it, or wait until it is done";
+                return Err(Failure::failed("busy", message));
+            }
+            *job = Some(Job { work: Arc::clone(&work), run: String::new(), picture: picture.to_owned() });
+        }
+        // from here on it ends, whatever becomes of it
+        let last = AtLast(Arc::clone(&work));
+        let (run, dir) = self.folder.begin_run(picture)?;
+        if let Some(job) = locked(&self.job).as_mut() {
+            job.run = run;
+        }
+        command.extend(["--out".to_owned(), dir.to_string_lossy().into_owned(), "--json".to_owned()]);
         let desk = Arc::clone(self);
         let begun = self.job();
         Ok((begun, move || {
+            let _last = last;
             let done = desk.program.perform(&command, &*work, &work.stop).and_then(|performed| {
                 let failure = performed.failure.clone();
                 Ok(Ended { answer: json_of(performed)?, failure })
@@ -157,6 +182,7 @@ impl Desk {
         job.map_or(Value::Null, |job| {
             let mut told = job.work.json();
             told["run"] = json!(job.run);
+            told["picture"] = json!(job.picture);
             told
         })
     }
@@ -169,6 +195,14 @@ impl Desk {
             job.work.stop.want();
             true
         })
+    }
+
+    /// Ends everything in hand.
+    pub(crate) fn close(&self) {
+        self.stop();
+        locked(&self.asked).values().for_each(|(_, work)| {
+            work.stop.want();
+        });
     }
 
     /// What a command without a picture answers.

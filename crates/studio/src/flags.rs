@@ -40,11 +40,11 @@ const MOST_BYTES: usize = 200;
 /// How often a flag may be repeated.
 const MOST_TIMES: usize = 100;
 
-/// The arguments that these flags are; a flag that is null, false or empty is left out.
+/// The arguments that these flags are, with heads of these names; a flag that is null, false or empty is left out.
 ///
 /// # Errors
 /// `usage`: one that there is not, or a value that none has.
-pub(crate) fn arguments(flags: &Map<String, Value>) -> Result<Vec<String>, Failure> {
+pub(crate) fn arguments(flags: &Map<String, Value>, rigs: &[String]) -> Result<Vec<String>, Failure> {
     let mut arguments = Vec::new();
     for (name, value) in flags {
         if !FLAGS.contains(&name.as_str()) {
@@ -58,16 +58,16 @@ pub(crate) fn arguments(flags: &Map<String, Value>) -> Result<Vec<String>, Failu
             Value::Bool(true) => arguments.push(format!("--{flag}")),
             Value::Array(values) if values.len() <= MOST_TIMES => {
                 for value in values {
-                    arguments.extend(argument(&flag, value)?);
+                    arguments.extend(argument(&flag, value, rigs)?);
                 }
             }
-            value => arguments.extend(argument(&flag, value)?),
+            value => arguments.extend(argument(&flag, value, rigs)?),
         }
     }
     Ok(arguments)
 }
 
-fn argument(flag: &str, value: &Value) -> Result<Option<String>, Failure> {
+fn argument(flag: &str, value: &Value, rigs: &[String]) -> Result<Option<String>, Failure> {
     let text = match value {
         Value::String(text) => text.trim().to_owned(),
         Value::Number(number) => number.to_string(),
@@ -76,8 +76,8 @@ fn argument(flag: &str, value: &Value) -> Result<Option<String>, Failure> {
     if text.len() > MOST_BYTES || text.contains(|c: char| c.is_control()) {
         return Err(refused(format!("{flag} is longer than {MOST_BYTES} bytes, or not one line")));
     }
-    if flag == "rig" && !text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-') {
-        return Err(refused(format!("rig is a preset by name, such as report; it is {text}")));
+    if flag == "rig" && !text.is_empty() && !rigs.contains(&text) {
+        return Err(refused(format!("rig is one of {}; it is {text}", rigs.join(", "))));
     }
     // with its value in one argument: no value can be taken for another flag
     Ok((!text.is_empty()).then(|| format!("--{flag}={text}")))
@@ -105,7 +105,7 @@ mod tests {
 
     fn of(flags: Value) -> Result<Vec<String>, Failure> {
         let Value::Object(flags) = flags else { unreachable!() };
-        arguments(&flags)
+        arguments(&flags, &["report".to_owned(), "worn".to_owned()])
     }
 
     #[test]
@@ -124,8 +124,10 @@ mod tests {
         for (flags, why) in [
             (json!({ "out": "/etc/passwd" }), "out is no flag"),
             (json!({ "widht": "3m" }), "did you mean width?"),
-            (json!({ "rig": "/dev/ttyACM0" }), "a preset by name"),
-            (json!({ "rig": "../../x.toml" }), "a preset by name"),
+            (json!({ "rig": "/dev/ttyACM0" }), "rig is one of report, worn"),
+            (json!({ "rig": "../../x.toml" }), "rig is one of"),
+            (json!({ "rig": "COM3" }), "rig is one of"),
+            (json!({ "rig": "emulated" }), "rig is one of"),
             (json!({ "width": { "m": 3 } }), "width is a text"),
             (json!({ "width": "3m\n--out" }), "not one line"),
             (json!({ "layer": ["x".repeat(300)] }), "longer than 200 bytes"),

@@ -62,13 +62,15 @@ impl Folder {
     /// # Errors
     /// `cannot-write`.
     pub(crate) fn open(dir: &Path) -> Result<Self, Failure> {
-        let folder = Self { dir: dir.to_owned() };
+        // from the root: no name of it is taken for a flag
+        let dir = std::path::absolute(dir).map_err(|e| cannot_write(dir, &e))?;
+        let folder = Self { dir };
         for part in [folder.pictures(), folder.runs()] {
             fs::create_dir_all(&part).map_err(|e| cannot_write(&part, &e))?;
         }
         for (name, bytes) in EXAMPLES {
             if !folder.pictures().join(name).exists() {
-                folder.put(name, bytes)?;
+                files::write(&folder.pictures().join(name).to_string_lossy(), bytes)?;
             }
         }
         Ok(folder)
@@ -106,7 +108,15 @@ impl Folder {
             match fs::read(self.pictures().join(&id)) {
                 Ok(there) if there == bytes => return Ok(id),
                 Ok(_) => {}
-                Err(_) => return self.put(&id, bytes).map(|()| id),
+                Err(_) => match self.put(&id, bytes) {
+                    // somebody else took the name meanwhile
+                    Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => {}
+                    put => {
+                        return put
+                            .map(|()| id.clone())
+                            .map_err(|e| cannot_write(&self.pictures().join(id), &e));
+                    }
+                },
             }
         }
         Err(Failure::failed(
@@ -115,8 +125,14 @@ impl Folder {
         ))
     }
 
-    fn put(&self, id: &str, bytes: &[u8]) -> Result<(), Failure> {
-        files::write(&self.pictures().join(id).to_string_lossy(), bytes)
+    /// Writes a picture that is not there yet.
+    fn put(&self, id: &str, bytes: &[u8]) -> std::io::Result<()> {
+        std::io::Write::write_all(&mut fs::File::create_new(self.pictures().join(id))?, bytes)
+    }
+
+    /// A place for the table of a plan, of this process alone.
+    pub(crate) fn table(&self, number: u64) -> PathBuf {
+        self.dir.join(format!(".plan-{}-{number}.csv", std::process::id()))
     }
 
     /// Where a picture lies; `None` where there is none of that id.
@@ -140,6 +156,8 @@ impl Folder {
             .filter_map(|entry| {
                 let id = entry.file_name().into_string().ok()?;
                 let (_, kind) = parted(&id)?;
+                // what was put there under another name than a page can ask for
+                self.picture(&id)?;
                 let when = entry.metadata().and_then(|meta| meta.modified()).ok()?;
                 let example = EXAMPLES.iter().position(|(name, _)| *name == id);
                 let told = json!({ "id": id, "example": example.is_some(), "shows": SHOWN.contains(&kind.as_str()) });
@@ -190,7 +208,7 @@ fn parted(name: &str) -> Option<(String, String)> {
 fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
     Failure::failed(
         "cannot-write",
-        format!("cannot make {}: {error}; check the name and the permissions", path.display()),
+        format!("cannot write {}: {error}; check the name and the permissions", path.display()),
     )
 }
 

@@ -17,35 +17,36 @@ pub(crate) fn binary(table: &str, answer: &Value) -> Option<Vec<u8>> {
     let head: Vec<&str> = lines.next()?.split(',').collect();
     let at = |name: &str| head.iter().position(|column| *column == name);
     let (lit, x, y) = (at("lit")?, at("x_m")?, at("y_m")?);
-    let rows: Option<Vec<[f64; 3]>> = lines
-        .map(|line| {
-            let cells: Vec<&str> = line.split(',').collect();
-            let number = |at: usize| cells.get(at)?.parse::<f64>().ok();
-            Some([number(x)?, number(y)?, number(lit)?])
-        })
-        .collect();
-    let rows = rows?;
-    let every = rows.len().div_ceil(MOST_ROWS).max(1);
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |at: usize| cells.get(at)?.parse::<f64>().ok();
+        Some([number(x)?, number(y)?, number(lit)?])
+    };
+    let every = lines.clone().count().div_ceil(MOST_ROWS).max(1);
     let strokes = lit_ticks(answer);
-    let kept: Vec<usize> = (0..rows.len()).step_by(every).collect();
     let mut columns = [const { Vec::new() }; COLUMNS as usize];
-    let mut stroke = 0;
-    for &tick in &kept {
-        let [x, y, lit] = rows[tick];
+    let (mut stroke, mut rows) = (0, 0);
+    let mut lines = lines.enumerate().peekable();
+    while let Some((tick, line)) = lines.next() {
+        if tick % every != 0 {
+            continue;
+        }
+        let [x, y, lit] = row(line)?;
+        let [next_x, next_y, _] = lines.peek().map_or(Some([x, y, lit]), |(_, next)| row(next))?;
         while strokes.get(stroke).is_some_and(|&(_, end)| end < tick) {
             stroke += 1;
         }
         let number = strokes.get(stroke).filter(|&&(begin, _)| begin <= tick).map_or(0, |_| stroke + 1);
-        let [next_x, next_y, _] = rows[(tick + 1).min(rows.len() - 1)];
         let (dx, dy) = (next_x - x, next_y - y);
         let speed_m_s = 1e3 * (dx * dx + dy * dy).sqrt();
         for (column, value) in columns.iter_mut().zip([x, y, lit, number as f64, speed_m_s]) {
             column.push(value as f32);
         }
+        rows += 1;
     }
     let mut bytes = vec![KIND, VERSION];
     bytes.extend(COLUMNS.to_le_bytes());
-    for number in [0, kept.len() as u32, every as u32] {
+    for number in [0, rows, every as u32] {
         bytes.extend(number.to_le_bytes());
     }
     columns.iter().flatten().for_each(|value| bytes.extend(value.to_le_bytes()));

@@ -4,6 +4,9 @@ use tracelight_task::{Failure, Progress, Stop};
 
 /// Does what command lines say: whatever the page asks for is one, and nothing else.
 pub trait Program: Send + Sync + 'static {
+    /// Names of the heads that a page may choose: simulated ones, that no file and no port has to be read for.
+    fn rigs(&self) -> Vec<String>;
+
     /// Does what a command line says, without the program's name, in this process.
     ///
     /// # Errors

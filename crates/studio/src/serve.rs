@@ -73,6 +73,8 @@ impl Studio {
             .enable_all()
             .build()
             .map_err(failed)?;
+        // who ends it waits until what is traced is dark, and its results are whole
+        let _kept = stop.keep();
         let (desk, stop) = (Arc::clone(&self.desk), stop.clone());
         let done = runtime.block_on(async move {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
@@ -82,7 +84,7 @@ impl Studio {
                 () = wanted(&stop, lasts_s) => Ok(()),
             }
         });
-        desk.stop();
+        desk.close();
         // who is stopped ends soon, with its results whole
         runtime.shutdown_timeout(Duration::from_secs(5));
         done.map_err(failed)

@@ -136,6 +136,9 @@ struct Asked {
     /// Which page asks.
     #[serde(default)]
     page: String,
+    /// Its number of this wish: of two the higher one counts.
+    #[serde(default)]
+    number: u64,
 }
 
 /// Reads a request, or says what is wrong with it.
@@ -147,15 +150,14 @@ fn asked(bytes: &[u8]) -> Result<Asked, Refused> {
 }
 
 async fn plan(State(desk): Shared, bytes: Bytes) -> Result<Json<Value>, Refused> {
-    let Asked { picture, flags, page } = asked(&bytes)?;
-    beside(move || desk.plan(&page, &picture, &flags)).await.map(Json)
+    let Asked { picture, flags, page, number } = asked(&bytes)?;
+    beside(move || desk.plan((&page, number), &picture, &flags)).await.map(Json)
 }
 
 async fn points(State(desk): Shared, Path(id): Path<u64>) -> Response {
     match desk.points(id) {
         Some(bytes) => {
-            ([(CONTENT_TYPE, "application/octet-stream"), (CACHE_CONTROL, "no-store")], bytes.to_vec())
-                .into_response()
+            ([(CONTENT_TYPE, "application/octet-stream"), (CACHE_CONTROL, "no-store")], bytes).into_response()
         }
         None => missing("plan"),
     }
@@ -163,10 +165,14 @@ async fn points(State(desk): Shared, Path(id): Path<u64>) -> Response {
 
 async fn trace(State(desk): Shared, bytes: Bytes) -> Result<(StatusCode, Json<Value>), Refused> {
     let Asked { picture, flags, .. } = asked(&bytes)?;
-    let (begun, run) = beside(move || desk.trace(&picture, &flags)).await?;
-    // it goes on when nobody looks any more
-    drop(spawn_blocking(run));
-    Ok((StatusCode::ACCEPTED, Json(begun)))
+    let threads = tokio::runtime::Handle::current();
+    // begun where nobody who leaves can interrupt it; it goes on when nobody looks any more
+    let begun = beside(move || {
+        let (begun, run) = desk.trace(&picture, &flags)?;
+        drop(threads.spawn_blocking(run));
+        Ok(begun)
+    });
+    Ok((StatusCode::ACCEPTED, Json(begun.await?)))
 }
 
 async fn job(State(desk): Shared) -> Json<Value> {

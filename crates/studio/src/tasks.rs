@@ -26,6 +26,19 @@ struct State {
     ended: Option<Ended>,
 }
 
+/// Ends a piece of work that ends in no other way.
+pub(crate) struct AtLast(pub(crate) Arc<Work>);
+
+impl Drop for AtLast {
+    fn drop(&mut self) {
+        if !self.0.is_over() {
+            let failure =
+                Failure::failed("internal", "the work ended in a way that it must not: please tell us");
+            self.0.end(Ended { answer: Value::Null, failure: Some(failure) });
+        }
+    }
+}
+
 /// How it ended.
 #[derive(Clone, Debug)]
 pub(crate) struct Ended {

@@ -1,8 +1,9 @@
 //! A head that finds where its joints end, by coming up against their end stops gently, and is homed by them.
 
 use tracelight_eye::homing::may_be_a_stop;
-use tracelight_rig::{Joint, PanTilt, Telemetry};
+use tracelight_rig::{Fault, FaultRecord, Joint, PanTilt, Telemetry};
 use tracelight_session::{Job, Request, State};
+use tracelight_sim::observed_tick;
 use tracelight_task::Failure;
 
 use super::{GENTLE_RAD_S, GENTLE_RAD_S2, Mover, PARK_TICKS, Place, REST_TICKS};
@@ -39,19 +40,51 @@ impl Mover<'_> {
     /// # Errors
     /// As of [`new`](Mover::new); `no-stop`: a joint turns on and on; `stops`: it does not stop at the same place twice, or within the range it is said to have. A homed head is not homed any more after the others.
     pub fn find_stops(&mut self) -> Result<PanTilt<(f64, f64)>, Failure> {
-        let homed = self.place().homed;
-        if homed {
-            // its range ends before its stops
+        if !self.place().homed {
+            let message = "the head is not homed, and its stops would be told from wherever it was powered up: home it first, such as by `tracelight home`";
+            return Err(Failure::failed("unhomed", message));
+        }
+        self.let_go_after(|mover| {
+            mover.unhome()?;
+            // whoever measures what is kept looks twice
+            let found = mover.touch_stops(2)?;
+            if let Some(fault) = mover.lost.take() {
+                let message = format!(
+                    "an encoder may have lost counts ({}) when a joint came up against its stop: home the head again, and try again",
+                    fault.code()
+                );
+                return Err(Failure::failed("stops", message));
+            }
+            mover.check_beyond_range(found)?;
+            mover.home_calmly(|told| told.measured.map(|measured| measured.count))?;
+            Ok(found)
+        })
+    }
+
+    /// Does something that may leave a joint at its stop; where it fails or is interrupted, the joint is let go.
+    fn let_go_after<T>(&mut self, what: impl FnOnce(&mut Self) -> Result<T, Failure>) -> Result<T, Failure> {
+        if self.driving.rig.drive.kind.is_open_loop() {
+            let message =
+                "a head without encoders does not notice its stops: it is homed by a camera or by hand";
+            return Err(Failure::failed("stops", message));
+        }
+        self.lost = None;
+        let done = what(self);
+        if done.is_err() {
+            // refused is what makes no sense any more
+            let _ = self.ask(Request::Stop);
+            let _ = self.ask(Request::Park);
+            let _ = observed_tick(&mut self.wall);
+        }
+        done
+    }
+
+    fn unhome(&mut self) -> Result<(), Failure> {
+        if self.place().homed {
             self.ask(Request::Unhome)?;
             self.wait(REST_TICKS, |wall| wall.state() == State::Unhomed)?;
         }
-        // whoever measures what is kept looks twice
-        let found = self.touch_stops(2)?;
-        if homed {
-            self.home_calmly(|told| told.measured.map(|measured| measured.count))?;
-            self.check_beyond_range(found)?;
-        }
-        Ok(found)
+        Ok(())
     }
 
     /// Refuses stops within what the joints are said to turn.
@@ -82,10 +115,11 @@ impl Mover<'_> {
             let message = "the rig file tells no end stops: home the head otherwise, once, and have `tracelight home --find-stops` measure them for its [homing]";
             return Err(Failure::failed("stops", message));
         };
-        if self.place().homed {
-            self.ask(Request::Unhome)?;
-            self.wait(REST_TICKS, |wall| wall.state() == State::Unhomed)?;
-        }
+        self.let_go_after(|mover| mover.homed_by(stops_rad))
+    }
+
+    fn homed_by(&mut self, stops_rad: PanTilt<(f64, f64)>) -> Result<Place, Failure> {
+        self.unhome()?;
         // that both are as far apart as they are said to be shows that they are they
         let found_rad = self.touch_stops(1)?;
         for joint in Joint::BOTH {
@@ -204,12 +238,19 @@ impl Mover<'_> {
         ))
     }
 
-    /// A joint struck something so hard that its controller took it for a fault: the furthest count that it came to.
+    /// A joint struck something so hard that its controller took it for a fault: the furthest count that it came to. A fault of anything else is one.
     fn struck(&mut self, joint: Joint, way: f64, mut furthest: i32) -> Result<i32, Failure> {
-        if let Some(record) = self.last.telemetry.latched.filter(|record| !may_be_a_stop(record.fault)) {
-            return Err(Failure::fault(record));
-        }
+        let may_be =
+            |record: &FaultRecord| may_be_a_stop(record.fault) && record.joint.is_none_or(|of| of == joint);
         for _ in 0..SWING_TICKS {
+            let Telemetry { latched, inputs, .. } = self.last.telemetry;
+            if let Some(record) = latched {
+                // one fault is told; whoever arms has an interlock that opened meanwhile told, and the laser's switches tried anew
+                if !may_be(&record) || inputs.any_open() {
+                    return Err(Failure::fault(record));
+                }
+                self.lost = self.lost.or_else(|| Some(record.fault).filter(|fault| may_lose(*fault)));
+            }
             self.observe()?;
             furthest = further(furthest, self.last.telemetry.measured[joint].count, way);
         }
@@ -238,6 +279,9 @@ impl Mover<'_> {
                 if self.wall.state() != State::Parking && self.last.telemetry.latched.is_none() {
                     return self.calm();
                 }
+            }
+            if self.last.telemetry.latched.is_none() {
+                break;
             }
             // it pushed for a moment longer than its controller has patience
             self.struck(joint, 0.0, 0)?;
@@ -276,6 +320,14 @@ impl Mover<'_> {
 /// The count that is further that way.
 fn further(a: i32, b: i32, way: f64) -> i32 {
     if way > 0.0 { a.max(b) } else { a.min(b) }
+}
+
+/// Whether counts may have been lost with this fault; an encoder that stood while its motor pushed was held up.
+const fn may_lose(fault: Fault) -> bool {
+    matches!(
+        fault,
+        Fault::EncoderJumped | Fault::EncoderSlipping | Fault::EncoderNoisy | Fault::EstimateDiverged
+    )
 }
 
 /// Whether a joint is behind its plan, and stands.

@@ -18,6 +18,10 @@ struct Noting {
 }
 
 impl Program for Noting {
+    fn rigs(&self) -> Vec<String> {
+        vec!["report".to_owned()]
+    }
+
     fn perform(
         &self,
         arguments: &[String],
@@ -43,6 +47,7 @@ impl Program for Noting {
                 }
                 std::thread::sleep(std::time::Duration::from_millis(2));
             },
+            "explain" => panic!("a program that must not"),
             _ => Ok(done(r#"{"runs":[]}"#)),
         }
     }
@@ -186,6 +191,20 @@ fn one_job_at_a_time_is_traced_and_stopped_by_anybody() {
         studio.go_on.send(()).unwrap();
         let ended = studio.until_over().await;
         assert!(ended["failure"].is_null() && ended["answer"]["tracking"].is_object(), "{ended}");
+    });
+}
+
+#[test]
+fn an_older_wish_of_a_page_counts_for_nothing_and_a_program_that_fails_is_told() {
+    run(async {
+        let studio = studio("wishes");
+        let wish = |number: u32| format!(r#"{{"picture":"star.png","page":"a","number":{number}}}"#);
+        assert_eq!(studio.post("/api/v1/plans", wish(7)).await.0, StatusCode::OK);
+        let (status, told) = studio.post("/api/v1/plans", wish(6)).await;
+        assert_eq!((status, &told["error"]["code"]), (StatusCode::CONFLICT, &json!("interrupted")));
+        assert_eq!(studio.post("/api/v1/plans", wish(8)).await.0, StatusCode::OK);
+        let (status, told) = studio.get("/api/v1/explain/board").await;
+        assert_eq!(status, StatusCode::UNPROCESSABLE_ENTITY, "{}", String::from_utf8_lossy(&told));
     });
 }
 

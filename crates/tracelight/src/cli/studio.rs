@@ -6,6 +6,7 @@ use clap::Args;
 use serde_json::json;
 use tracelight_files as files;
 use tracelight_operator::Bar;
+use tracelight_sim::RigConfig;
 use tracelight_studio::{Performed, Program, open};
 use tracelight_task::{Failure, Progress, Stop, Task};
 
@@ -43,6 +44,10 @@ pub(crate) struct StudioArgs {
 struct Commands(PerformsWith);
 
 impl Program for Commands {
+    fn rigs(&self) -> Vec<String> {
+        RigConfig::presets().into_iter().map(|preset| preset.name).collect()
+    }
+
     fn perform(
         &self,
         arguments: &[String],
