@@ -114,7 +114,7 @@ fn a_joint_without_stops_is_said_to_have_none() {
     let mut rig = rig_of("report", RANGE_RAD);
     // its stops are further out than anybody says
     rig.truth.model.geometry.range_rad.pan = (-2.9, 2.9);
-    let (done, _, homed) = moved(&rig, PanTilt::default(), 1, |mover| mover.find_stops());
+    let (done, _, homed) = moved(&rig, PanTilt::default(), 1, |mover| mover.home_by_stops());
     let failure = done.unwrap_err();
     assert!(
         failure.code == "no-stop" && failure.message.contains("pan was turned by 151"),
