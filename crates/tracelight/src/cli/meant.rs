@@ -190,7 +190,6 @@ mod tests {
             ("stroke", "did you mean tracelight strokes?"),
             ("banana", "tracelight trace FILE"),
             ("src", "tracelight strokes src -o out/"),
-            ("studio", "not built yet"),
             ("help trcae", "did you mean trace?"),
             ("help lab boda", "did you mean bode?"),
             ("help trace more", "trace; it has none"),
