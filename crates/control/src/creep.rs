@@ -49,7 +49,7 @@ impl Pace {
         (now, ahead): (&Setpoint, &Setpoint),
         later_rad: impl Fn(f32) -> f32,
     ) -> (Setpoint, Setpoint) {
-        *self = self.next(creep, estimate, (now, later_rad));
+        *self = self.next(creep, estimate, now, later_rad);
         match self {
             Self::Follow => (*now, *ahead),
             Self::Rest(position_rad) => {
@@ -62,12 +62,19 @@ impl Pace {
 
     #[expect(clippy::inline_always, reason = "as of what calls it")]
     #[inline(always)]
-    fn next(self, creep: &Creep, estimate: &Estimate, plan: (&Setpoint, impl Fn(f32) -> f32)) -> Self {
-        let now = plan.0;
+    fn next(
+        self,
+        creep: &Creep,
+        estimate: &Estimate,
+        now: &Setpoint,
+        later_rad: impl Fn(f32) -> f32,
+    ) -> Self {
         match self {
             Self::Follow if creep.begins(now) => Self::Rest(estimate.position_rad),
             Self::Rest(_) | Self::Hop(_) if creep.ends(now) => Self::Follow,
-            Self::Rest(_) if creep.is_behind(estimate, now) => Self::Hop(creep.hop(estimate, &plan)),
+            Self::Rest(_) if creep.is_behind(estimate, now) => {
+                Self::Hop(creep.hop(estimate, &as_planned(now, later_rad)))
+            }
             Self::Hop(hop) if hop.is_over() => Self::Rest(hop.end_rad()),
             same => same,
         }
@@ -77,8 +84,6 @@ impl Pace {
 impl Creep {
     /// What is this much faster is not slow any more.
     const FASTER: f32 = 1.25;
-    /// So far ahead it is seen what the plan does, ticks: most hops are over then.
-    const SEEN_TICKS: f32 = 16.0;
     /// A plan so slow that it takes longer than this for half a hop, s, is gone ahead of by as much as it goes in that time.
     const LEAD_S: f32 = 0.06;
 
@@ -99,28 +104,15 @@ impl Creep {
         lag.abs() >= if forward { 0.5 * self.hop_rad } else { self.hop_rad }
     }
 
-    /// The plan now, with no more acceleration than takes it where it will be: a push that is soon over takes it nowhere, and one that is to come is the next hop's.
-    fn as_planned(&self, (now, later_rad): &(&Setpoint, impl Fn(f32) -> f32)) -> Setpoint {
-        let time_s = Self::SEEN_TICKS * TICK_S;
-        let as_now_rad = after(now, time_s).position_rad - now.position_rad;
-        let planned_rad = later_rad(Self::SEEN_TICKS) - now.position_rad;
-        if as_now_rad.abs() <= planned_rad.abs() && as_now_rad * planned_rad >= 0.0 {
-            return **now;
-        }
-        let acceleration_rad_s2 = 2.0 * (planned_rad - time_s * now.velocity_rad_s) / (time_s * time_s);
-        Setpoint { acceleration_rad_s2, ..**now }
-    }
-
     /// The shortest from where the joint is to half a hop ahead of where the plan then is, or as far towards it as a hop reaches.
-    fn hop(&self, estimate: &Estimate, plan: &(&Setpoint, impl Fn(f32) -> f32)) -> Hop {
-        let now = self.as_planned(plan);
+    fn hop(&self, estimate: &Estimate, now: &Setpoint) -> Hop {
         const SHORTEST: u16 = 2;
         const LONGEST: u16 = 28;
         let half = 0.5 * self.hop_rad;
         let lead = within(Self::LEAD_S * now.velocity_rad_s, half);
         let mut half_ticks = SHORTEST;
         loop {
-            let target = after(&now, f32::from(2 * half_ticks) * TICK_S).position_rad + lead;
+            let target = after(now, f32::from(2 * half_ticks) * TICK_S).position_rad + lead;
             let hop = Hop::new(estimate, target, half_ticks);
             if hop.most_rad_s2() <= self.acceleration_rad_s2 {
                 return hop;
@@ -184,6 +176,22 @@ impl Hop {
         let turn = Setpoint { acceleration_rad_s2: self.second_rad_s2, ..after(&self.from, half * TICK_S) };
         after(&turn, (tick - half) * TICK_S)
     }
+}
+
+/// So far ahead it is seen what a plan does, ticks: most hops are over then.
+const SEEN_TICKS: f32 = 16.0;
+
+/// The plan now, with no more acceleration than takes it where it will be: a push that is soon over takes it nowhere, and one that is to come is the next hop's.
+#[cold]
+fn as_planned(now: &Setpoint, later_rad: impl Fn(f32) -> f32) -> Setpoint {
+    let time_s = SEEN_TICKS * TICK_S;
+    let as_now_rad = after(now, time_s).position_rad - now.position_rad;
+    let planned_rad = later_rad(SEEN_TICKS) - now.position_rad;
+    if as_now_rad.abs() <= planned_rad.abs() && as_now_rad * planned_rad >= 0.0 {
+        return *now;
+    }
+    let acceleration_rad_s2 = 2.0 * (planned_rad - time_s * now.velocity_rad_s) / (time_s * time_s);
+    Setpoint { acceleration_rad_s2, ..*now }
 }
 
 /// A motion that goes on as it is.
@@ -256,6 +264,32 @@ mod tests {
         for (planned, now) in followed(steady(0.03), 1000).chain(followed(turning, 1000)) {
             assert_eq!(planned, now);
         }
+    }
+
+    /// A slow plan that is pushed at a moment, for some ticks there and as many back, as where a camera has moved two segments.
+    fn pushed(begins_s: f32) -> impl Fn(f32) -> Setpoint {
+        const PUSH_RAD_S2: f32 = 1.5;
+        const LASTS_S: f32 = 3e-3;
+        move |time_s| {
+            let since = |part: f32| (time_s - begins_s - part * LASTS_S).max(0.0);
+            let sum = |of: &dyn Fn(f32) -> f32| of(since(0.0)) - 2.0 * of(since(1.0)) + of(since(2.0));
+            let slow = steady(0.004)(time_s);
+            Setpoint {
+                position_rad: slow.position_rad + sum(&|t| 0.5 * PUSH_RAD_S2 * t * t),
+                velocity_rad_s: slow.velocity_rad_s + sum(&|t| PUSH_RAD_S2 * t),
+                acceleration_rad_s2: sum(&|t| if t > 0.0 { PUSH_RAD_S2 } else { 0.0 }),
+            }
+        }
+    }
+
+    #[test]
+    fn a_push_that_is_soon_over_is_not_gone_ahead_of() {
+        let ahead = |begins_s: f32| {
+            let way = followed(pushed(begins_s), 800);
+            way.map(|(planned, now)| now.position_rad - planned.position_rad).fold(0.0, f32::max)
+        };
+        let furthest = (0..60).map(|k| ahead(0.4 + 1e-3 * k as f32)).fold(0.0, f32::max);
+        assert!(furthest <= CREEP.hop_rad, "{furthest}");
     }
 
     #[test]

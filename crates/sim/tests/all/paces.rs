@@ -172,6 +172,22 @@ fn stopped_at_once_it_is_dark_in_the_next_tick_and_goes_on_where_the_light_was()
 }
 
 #[test]
+fn stopped_on_its_way_it_moves_a_little_in_the_dark_before_it_lights_again() {
+    let config = RigConfig::report();
+    let plan = plan_of(&config, star(0.2));
+    for when in [600, 1500, 2400] {
+        let Stopped { ran, .. } = stopped_at(&config, &plan, when, Command::Disarm, 3);
+        assert!(ran.is_done(), "{when}: {:?}", ran.fault());
+        let stopped = ran.ticks.iter().rposition(|tick| tick.telemetry.phase == Phase::Dark).unwrap();
+        let rest = &ran.ticks[stopped..];
+        let lights = |tick: &Tick| tick.light || tick.telemetry.actuation.lights();
+        let lit = rest.iter().position(lights).unwrap();
+        let test_move = rest[..lit].iter().filter(|tick| tick.telemetry.phase == Phase::Testing).count();
+        assert!(test_move > 100, "{when}: {test_move} ticks of a test move in the {lit} dark ones");
+    }
+}
+
+#[test]
 fn paused_it_draws_its_stroke_to_the_end() {
     check_stops(Command::Pause, None, 40);
 }
