@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use tracelight_chart::page_colours;
 use tracelight_report::html::escaped;
+use tracelight_task::quoted;
 
 use crate::chapter::{Chapter, Done, Fact, Joined, Part, Run};
 use crate::table::{self, Cell, Compared};
@@ -188,16 +189,6 @@ fn width_px(svg: &str) -> Option<f64> {
     let root = svg.split_once('>')?.0;
     let value = root.split_once(" width=\"")?.1.split_once('"')?.0;
     value.parse().ok()
-}
-
-/// An argument as a shell takes it.
-fn quoted(argument: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+".contains(c);
-    if argument.chars().all(plain) {
-        argument.to_owned()
-    } else {
-        format!("'{}'", argument.replace('\'', "'\\''"))
-    }
 }
 
 #[cfg(test)]

@@ -289,11 +289,16 @@ impl<'a> Mover<'a> {
 
     /// Waits until the joints have rested for a while.
     fn settle(&mut self) -> Result<(), Failure> {
+        self.stay(SETTLED_TICKS, |mover| mover.wall.rests())
+    }
+
+    /// Waits until so many ticks in a row were as they should be of a head that rests.
+    fn stay(&mut self, ticks: u32, mut rests: impl FnMut(&Self) -> bool) -> Result<(), Failure> {
         let mut rested = 0;
         for _ in 0..REST_TICKS {
             self.step()?;
-            rested = if self.wall.rests() { rested + 1 } else { 0 };
-            if rested >= SETTLED_TICKS {
+            rested = if rests(self) { rested + 1 } else { 0 };
+            if rested >= ticks {
                 return Ok(());
             }
         }

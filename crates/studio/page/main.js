@@ -6,7 +6,7 @@ import { Fields } from './fields.js'
 import { element, follow, showResult, showRuns } from './runs.js'
 import { Store } from './store.js'
 import { Timeline } from './timeline.js'
-import { Wall } from './wall.js'
+import { NOWHERE, Wall } from './wall.js'
 import { degrees, length, offset, plain, time, typed } from './words.js'
 
 /** How long a wish rests before it is planned, ms. */
@@ -52,12 +52,8 @@ function placed(box) {
 
 /** What was asked for when this page was last left. @returns {import('./store.js').Asked} */
 function earlier() {
-  try {
-    const { picture, flags } = JSON.parse(sessionStorage.getItem('asked') ?? '')
-    return { picture, flags }
-  } catch {
-    return { picture: 'house.png', flags: {} }
-  }
+  const asked = kept('sessionStorage', 'asked')
+  return asked ? JSON.parse(asked) : { picture: 'house.png', flags: {} }
 }
 
 /** Where the planned drawing lies. @param {api.Plan} of @returns {import('./wall.js').Box} */
@@ -71,7 +67,7 @@ function planned(of) {
 /** Where the drawing is to be by its flags: what the page cannot read lies where it was planned. @param {api.Flags} flags @returns {import('./wall.js').Box} */
 function boxOf(flags) {
   const known = plan && JSON.stringify(flags) === JSON.stringify(planFlags)
-  const was = plan ? planned(plan) : { x: 0, y: 0, turn: 0, width: 0.6096, height: 0.4572 }
+  const was = plan ? planned(plan) : NOWHERE
   if (known) return was
   const [x, y] = offset(String(flags.offset ?? '')) ?? [was.x, was.y]
   const degree = degrees(String(flags.rotate ?? ''))
@@ -107,7 +103,7 @@ function planSoon(rest = REST) {
 /** Nothing is planned: what is shown is of nothing. */
 function nothing() {
   plan = null
-  wall.show(null, { x: 0, y: 0, turn: 0, width: 0.6096, height: 0.4572 })
+  wall.show(null, NOWHERE)
   timeline.of(0, 0)
   for (const id of ['size', 'count', 'length', 'duration', 'spot']) by(id).textContent = '–'
   by('command').textContent = ''
@@ -316,23 +312,23 @@ function theme(name) {
   const [known, label] = THEMES[Math.max(0, at)]
   document.documentElement.dataset.theme = known
   by('theme').textContent = label
-  kept()?.setItem('theme', known)
+  keep('localStorage', 'theme', known)
   wall.redraw()
 }
 
-/** Keeps what is asked for until the page is loaded again. @param {import('./store.js').Asked} asked */
-function keep(asked) {
+/** Keeps a text in this browser; one that keeps nothing begins anew. @param {'localStorage' | 'sessionStorage'} where @param {string} name @param {string} text */
+function keep(where, name, text) {
   try {
-    sessionStorage.setItem('asked', JSON.stringify(asked))
+    window[where].setItem(name, text)
   } catch {
-    // a browser that keeps nothing begins anew
+    // it is shown all the same
   }
 }
 
-/** Where this browser keeps what belongs to it; null where it keeps nothing. */
-function kept() {
+/** What this browser has kept; null where it has nothing. @param {'localStorage' | 'sessionStorage'} where @param {string} name */
+function kept(where, name) {
   try {
-    return localStorage
+    return window[where].getItem(name)
   } catch {
     return null
   }
@@ -342,7 +338,7 @@ store.watch((asked) => {
   fields.show(asked.flags)
   // what was traced was another wish
   by('result').hidden = true
-  keep(asked)
+  keep('sessionStorage', 'asked', JSON.stringify(asked))
   wall.place({ ...boxOf(asked.flags), width: wall.box.width, height: wall.box.height })
   for (const button of by('pictures').querySelectorAll('button')) button.setAttribute('aria-pressed', String(button.title === asked.picture))
   by('name').textContent = asked.picture
@@ -378,12 +374,13 @@ addEventListener('drop', (event) => {
 })
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => wall.redraw())
 
-theme(kept()?.getItem('theme') ?? 'auto')
+theme(kept('localStorage', 'theme') ?? 'auto')
 fields.show(store.asked.flags)
 by('name').textContent = store.asked.picture
 planSoon(0)
 list().catch(problem)
 api.about().then((told) => (folder = told.folder)).then(view, problem)
+
 /** Looks whether somebody traces: another page, or this one before it was loaded again. */
 async function look() {
   if (tracing) return

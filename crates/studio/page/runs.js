@@ -46,7 +46,7 @@ export function showResult(card, ended) {
   card.append(element('h2', { text: `${picture}: traced on the simulated head` }))
   card.append(
     element('img', { src: runFile(run, 'trace.png'), alt: 'What a camera with an open shutter would have seen of the wall', width: '320' }),
-    element('p', { class: 'error-figure' }, element('strong', { text: `${plain(tracking.max_mm, 2)} mm` }), ' off at most, ', element('strong', { text: `${plain(tracking.rms_mm, 3)} mm` }), ' rms'),
+    element('p', {}, element('strong', { text: `${plain(tracking.max_mm, 2)} mm` }), ' off at most, ', element('strong', { text: `${plain(tracking.rms_mm, 3)} mm` }), ' rms'),
     element('p', { class: 'under', text: `${length(target.width_m)} × ${length(target.height_m)} in ${time(plan.duration_s)}` }),
     element('a', { href: runFile(run, 'report.html'), target: '_blank', rel: 'noopener', class: 'plain', text: 'Open the report' }),
   )

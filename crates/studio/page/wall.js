@@ -15,11 +15,13 @@ import { length } from './words.js'
 const MARGIN = 64
 const RULER = 26
 const HANDLE = 7
-/** Rows of the drawing that are drawn in a piece: an event can come between two. */
+/** Boxes that differ by less lie at the same place, m. */
 const SPAN_M = 5e-4
+/** Where nothing is planned yet. @type {Box} */
+export const NOWHERE = { x: 0, y: 0, turn: 0, width: 0.6096, height: 0.4572 }
 /** Largest picture of the drawing, pixels either way. */
 const MOST_PIXELS = 4096
-/** The longest way that a move by keys or a click is not a drag, pixels. */
+/** The longest way of a pointer that is a click and no drag, pixels. */
 const CLICK = 3
 
 export class Wall {
@@ -34,7 +36,7 @@ export class Wall {
     /** @type {Points | null} */
     this.points = null
     /** @type {Box} where it was planned */
-    this.planned = { x: 0, y: 0, turn: 0, width: 0.6, height: 0.45 }
+    this.planned = NOWHERE
     /** @type {Box} where it is to be */
     this.box = { ...this.planned }
     /** @type {View} */
@@ -68,11 +70,8 @@ export class Wall {
     this.planned = { ...box }
     this.bounds = points ? boundsOf(points, this.planned) : null
     if (!this.drag) this.box = { ...box }
-    this.bitmap = null
-    this.lit.forget()
-    this.dirty = true
-    if (fits && !this.#isSeen(this.box)) this.fit()
-    else if (this.first) this.fit()
+    this.redraw()
+    if (this.first || (fits && !this.#isSeen(this.box))) this.fit()
     this.first = false
   }
 
@@ -217,7 +216,7 @@ export class Wall {
   #paint(colours) {
     const points = /** @type {Points} */ (this.points)
     const ratio = window.devicePixelRatio || 1
-    const [left, top, right, low] = this.bounds ?? (this.bounds = boundsOf(points, this.planned))
+    const [left, top, right, low] = this.bounds ?? boundsOf(points, this.planned)
     const scale = this.#scale()
     const image = document.createElement('canvas')
     const pad = 3

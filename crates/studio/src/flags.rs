@@ -1,7 +1,7 @@
 //! What a page asks for, as a command line has it: the same names with underscores, the same values as text.
 
 use serde_json::{Map, Value};
-use tracelight_task::{Failure, nearest};
+use tracelight_task::{Failure, nearest, quoted};
 
 /// Flags of `plan` and `trace` that a page may give. None of them names a file.
 const FLAGS: [&str; 29] = [
@@ -89,12 +89,7 @@ fn refused(message: String) -> Failure {
 
 /// A command line as somebody types it.
 pub(crate) fn typed(arguments: &[String]) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_=./,:%+".contains(c);
-    let word = |text: &String| match text.chars().all(plain) {
-        true => text.clone(),
-        false => format!("'{}'", text.replace('\'', r"'\''")),
-    };
-    let words: Vec<String> = arguments.iter().map(word).collect();
+    let words: Vec<String> = arguments.iter().map(|argument| quoted(argument)).collect();
     format!("tracelight {}", words.join(" "))
 }
 

@@ -22,7 +22,7 @@ use crate::assets::packed;
 use crate::desk::Desk;
 use crate::folder::{EXAMPLES, MOST_BYTES};
 use crate::guard::{Port, SHOWN, guard};
-use crate::tasks::failure_json;
+use crate::tasks::{broken, failure_json};
 
 /// Everything there is, for a server at that port.
 pub(crate) fn router(desk: Arc<Desk>, port: u16) -> Router {
@@ -79,10 +79,7 @@ async fn beside<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
 ) -> Result<T, Refused> {
     let done = spawn_blocking(work).await;
-    done.unwrap_or_else(|_| {
-        Err(Failure::failed("internal", "the work ended in a way that it must not: please tell us"))
-    })
-    .map_err(Refused)
+    done.unwrap_or_else(|_| Err(broken())).map_err(Refused)
 }
 
 async fn about(State(desk): Shared) -> Json<Value> {

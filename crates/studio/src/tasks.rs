@@ -32,11 +32,14 @@ pub(crate) struct AtLast(pub(crate) Arc<Work>);
 impl Drop for AtLast {
     fn drop(&mut self) {
         if !self.0.is_over() {
-            let failure =
-                Failure::failed("internal", "the work ended in a way that it must not: please tell us");
-            self.0.end(Ended { answer: Value::Null, failure: Some(failure) });
+            self.0.end(Ended { answer: Value::Null, failure: Some(broken()) });
         }
     }
+}
+
+/// What is told of work that panicked.
+pub(crate) fn broken() -> Failure {
+    Failure::failed("internal", "the work ended in a way that it must not: please tell us")
 }
 
 /// How it ended.

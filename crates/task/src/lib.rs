@@ -9,6 +9,7 @@ mod nearest;
 mod pace;
 mod place;
 mod progress;
+mod quoted;
 mod stop;
 mod words;
 
@@ -19,5 +20,6 @@ pub use nearest::nearest;
 pub use pace::Pace;
 pub use place::Place;
 pub use progress::{NoProgress, Progress, Task};
+pub use quoted::quoted;
 pub use stop::{Kept, Stop};
 pub use words::{counted, phase_word};

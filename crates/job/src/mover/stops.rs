@@ -44,6 +44,7 @@ impl Mover<'_> {
             let message = "the head is not homed, and its stops would be told from wherever it was powered up: home it first, such as by `tracelight home`";
             return Err(Failure::failed("unhomed", message));
         }
+        self.check_encoders()?;
         self.let_go_after(|mover| {
             mover.unhome()?;
             // whoever measures what is kept looks twice
@@ -61,13 +62,18 @@ impl Mover<'_> {
         })
     }
 
-    /// Does something that may leave a joint at its stop; where it fails or is interrupted, the joint is let go.
-    fn let_go_after<T>(&mut self, what: impl FnOnce(&mut Self) -> Result<T, Failure>) -> Result<T, Failure> {
+    /// Refuses a head that does not notice what holds its joints up.
+    fn check_encoders(&self) -> Result<(), Failure> {
         if self.driving.rig.drive.kind.is_open_loop() {
             let message =
                 "a head without encoders does not notice its stops: it is homed by a camera or by hand";
             return Err(Failure::failed("stops", message));
         }
+        Ok(())
+    }
+
+    /// Does something that may leave a joint at its stop; where it fails or is interrupted, the joint is let go.
+    fn let_go_after<T>(&mut self, what: impl FnOnce(&mut Self) -> Result<T, Failure>) -> Result<T, Failure> {
         self.lost = None;
         let done = what(self);
         if done.is_err() {
@@ -115,6 +121,7 @@ impl Mover<'_> {
             let message = "the rig file tells no end stops: home the head otherwise, once, and have `tracelight home --find-stops` measure them for its [homing]";
             return Err(Failure::failed("stops", message));
         };
+        self.check_encoders()?;
         self.let_go_after(|mover| mover.homed_by(stops_rad))
     }
 
@@ -294,19 +301,13 @@ impl Mover<'_> {
 
     /// Waits until the joints stay within a count or two. Where a head is that is not homed nobody knows, nor how gravity pulls there: it may sway about its count.
     fn calm(&mut self) -> Result<(), Failure> {
-        let mut calm = 0;
         let mut about = self.last.telemetry.measured;
-        for _ in 0..REST_TICKS {
-            self.step()?;
-            let now = self.last.telemetry.measured;
+        self.stay(CALM_TICKS, |mover| {
+            let now = mover.last.telemetry.measured;
             let stays = Joint::BOTH.into_iter().all(|j| (now[j].count - about[j].count).abs() <= SWAY_COUNTS);
-            calm = if stays { calm + 1 } else { 0 };
             about = if stays { about } else { now };
-            if calm >= CALM_TICKS {
-                return Ok(());
-            }
-        }
-        Err(Failure::failed("unfinished", "the head does not come to rest: does something move it?"))
+            stays
+        })
     }
 
     /// Homes it in a tick in which it rests.

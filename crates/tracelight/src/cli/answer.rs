@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use clap::Args;
+use tracelight_operator::Bar;
 use tracelight_task::{Failure, Stop, Task};
 
 /// What every command has.
@@ -14,6 +15,12 @@ pub(crate) struct Voice {
     /// No progress and no remarks on standard error
     #[arg(long, global = true)]
     pub(crate) quiet: bool,
+}
+
+/// What work comes to that tells how far it is.
+pub(crate) fn watched<T>(voice: Voice, stop: &Stop, work: impl FnOnce(Task<'_>) -> T) -> T {
+    let bar = Bar::new(voice.quiet);
+    work(Task { progress: &bar, stop })
 }
 
 /// What a command prints on standard output when it succeeds, for people and for scripts.

@@ -3,12 +3,11 @@ use serde_json::{Value, json};
 use tracelight_camera::{camera_json, camera_text, look_at_all, no_camera_text};
 use tracelight_port::{Found, examine, examined_json, examined_text, found};
 use tracelight_sim::RigConfig;
-use tracelight_task::{Failure, Stop, Task};
+use tracelight_task::{Failure, Stop};
 
-use crate::cli::answer::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice, watched};
 use crate::cli::eyes::ImageSize;
 use crate::named;
-use tracelight_operator::Bar;
 
 /// List connected boards and cameras: what a board is and how good its line; modes, frame rate and latency of a camera
 #[derive(Args, Debug)]
@@ -36,9 +35,8 @@ pub(crate) fn run(args: &DoctorArgs, stop: &Stop) -> Result<Answer, Failure> {
         let seen = examine(&named::port(port), stop)?;
         return Ok(Answer::new(examined_text(&seen), examined_json(&seen).to_string()));
     }
-    let bar = Bar::new(args.voice.quiet);
     let size_px = args.camera_size.map(|size| size.0);
-    let cameras = look_at_all(args.camera.as_deref(), size_px, Task { progress: &bar, stop })?;
+    let cameras = watched(args.voice, stop, |task| look_at_all(args.camera.as_deref(), size_px, task))?;
     let rigs: Vec<String> = RigConfig::presets().into_iter().map(|rig| rig.name).collect();
     let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);

@@ -45,10 +45,9 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracelight_files as files;
-use tracelight_operator::Bar;
 use tracelight_task::{Failure, Status, Stop, Task};
 
-use self::answer::{Answer, Voice, print};
+use self::answer::{Answer, Voice, print, watched};
 use self::terminal::Terminal;
 use crate::interrupt;
 
@@ -130,10 +129,12 @@ fn offered(arguments: &[OsString]) -> Option<ExitCode> {
 
 fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
     match command {
-        Command::Trace(args) => (args.voice, shown(args.voice, stop, |task| trace::run(args, task))),
+        Command::Trace(args) => (args.voice, watched(args.voice, stop, |task| trace::run(args, task))),
         Command::Strokes(args) => (args.voice, strokes::run(args, stop)),
-        Command::Plan(args) => (args.voice, shown(args.voice, stop, |task| plan::run(args, task))),
-        Command::Point(args) => (args.voice, shown(args.voice, stop, |task| point::run(args, traced, task))),
+        Command::Plan(args) => (args.voice, watched(args.voice, stop, |task| plan::run(args, task))),
+        Command::Point(args) => {
+            (args.voice, watched(args.voice, stop, |task| point::run(args, traced, task)))
+        }
         Command::Studio(args) => (args.voice, studio::run(args, done_for, stop)),
         Command::Home(args) => (args.head.voice, moving::home(args, stop)),
         Command::Jog(args) => (args.head.voice, moving::jog(args, stop)),
@@ -144,7 +145,7 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Rig(args) => (args.voice(), rig::run(args, stop)),
         Command::Rigs(args) => (args.voice, rigs::run(args)),
         Command::Resume(args) => {
-            (args.voice, shown(args.voice, stop, |task| resume::run(args, traced, task)))
+            (args.voice, watched(args.voice, stop, |task| resume::run(args, traced, task)))
         }
         Command::Runs(args) => (args.voice, runs::run(args)),
         Command::Recover(args) => (args.voice, recover::run(args)),
@@ -154,18 +155,16 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
     }
 }
 
-/// Work whose progress a terminal shows.
-fn shown<T>(voice: Voice, stop: &Stop, work: impl FnOnce(Task<'_>) -> T) -> T {
-    let bar = Bar::new(voice.quiet);
-    work(Task { progress: &bar, stop })
+/// The command of a command line, without the program's name.
+fn read(arguments: &[String]) -> Result<Command, clap::Error> {
+    let all = std::iter::once("tracelight").chain(arguments.iter().map(String::as_str));
+    Ok(Cli::try_parse_from(all)?.command.typed(arguments.to_vec()))
 }
 
 /// Does what a command line says for somebody who shows its progress: commands that a page may need, with `--json`.
 fn done_for(arguments: &[String], task: Task<'_>) -> Result<Answer, Failure> {
-    let all = std::iter::once("tracelight").chain(arguments.iter().map(String::as_str));
     // what is said first is what is wrong; the rest is for a terminal
-    let refused = |e: clap::Error| failing::refused(&e);
-    match Cli::try_parse_from(all).map_err(refused)?.command.typed(arguments.to_vec()) {
+    match read(arguments).map_err(|e| failing::refused(&e))? {
         Command::Trace(args) => trace::run(&args, task),
         Command::Plan(args) => plan::run(&args, task),
         Command::Runs(args) => runs::run(&args),
@@ -176,21 +175,17 @@ fn done_for(arguments: &[String], task: Task<'_>) -> Result<Answer, Failure> {
 
 /// Does what a command line says, in this process, and returns what would be printed, with the failure of what it worked on, if any.
 fn answer_to(arguments: &[&str], stop: &Stop) -> Result<Answer, Failure> {
-    let all = std::iter::once("tracelight").chain(arguments.iter().copied());
-    let cli = Cli::try_parse_from(all).map_err(|e| Failure::failed("internal", e))?;
-    let typed = arguments.iter().map(|&argument| argument.to_owned()).collect();
-    perform(&cli.command.typed(typed), stop).1
+    let typed: Vec<String> = arguments.iter().map(|&argument| argument.to_owned()).collect();
+    perform(&read(&typed).map_err(|e| Failure::failed("internal", e))?, stop).1
 }
 
 /// What `trace` was asked by a command that was given earlier.
 fn traced(arguments: &[String]) -> Result<request::TraceArgs, Failure> {
-    let all = std::iter::once("tracelight").chain(arguments.iter().map(String::as_str));
     let refused = |why: String| {
         let message = format!("cannot go on with tracelight {}: {why}", arguments.join(" "));
         Failure::usage("usage", message)
     };
-    let cli = Cli::try_parse_from(all).map_err(|e| refused(e.to_string()))?;
-    match cli.command.typed(arguments.to_vec()) {
+    match read(arguments).map_err(|e| refused(e.to_string()))? {
         Command::Trace(args) => Ok(*args),
         _ => Err(refused("only trace can be gone on with".to_owned())),
     }

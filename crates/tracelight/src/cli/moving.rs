@@ -7,7 +7,7 @@ use serde_json::json;
 use tracelight_aim::HeadPose;
 use tracelight_eye::corners::angles;
 use tracelight_job::{Jog, Mover, Place};
-use tracelight_operator::asked;
+use tracelight_operator::{Bar, asked};
 use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, Driving, request_of};
 use tracelight_port::{At, head};
 use tracelight_rig::PanTilt;
@@ -21,7 +21,6 @@ use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::stand_by;
 use crate::cli::placing::positive_length;
 use crate::named;
-use tracelight_operator::Bar;
 
 /// The head at a port, and where it stands.
 #[derive(Args, Clone, Debug)]

@@ -7,12 +7,11 @@ use tracelight_pipeline::DEFAULT_DISTANCE_M;
 use tracelight_port::{Serving, serve};
 use tracelight_rig::wire::Greeting;
 use tracelight_sim::SimulatedRig;
-use tracelight_task::{Failure, Stop, Task};
+use tracelight_task::{Failure, Stop};
 
-use crate::cli::answer::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice, watched};
 use crate::cli::by_hand::each;
 use crate::named;
-use tracelight_operator::Bar;
 
 /// Emulate a board for programs that speak the wire's language
 #[derive(Args, Debug)]
@@ -62,12 +61,11 @@ impl RigArgs {
 
 pub(crate) fn run(args: &RigArgs, stop: &Stop) -> Result<Answer, Failure> {
     let RigAction::Serve(args) = &args.action;
-    let bar = Bar::new(args.voice.quiet);
     let config = named::rig(&args.rig)?;
     let put_up = if args.sim_unhomed { left } else { SimulatedRig::new };
     let rig = put_up(&config, HeadPose::square_on(DEFAULT_DISTANCE_M), args.seed).served();
     let rig = if args.sim_real { rig.posing_as(Greeting::PICO_2) } else { rig };
     let serving = Serving { rig, name: &config.name, at: &args.pty, lasts_s: args.lasts_s };
-    let served = serve(serving, Task { progress: &bar, stop })?;
+    let served = watched(args.voice, stop, |task| serve(serving, task))?;
     Ok(Answer::new(served.text(), served.json().to_string()))
 }

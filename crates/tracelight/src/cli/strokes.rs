@@ -8,6 +8,7 @@ use tracelight_campaign::{Batch, Figures, Finding, Out};
 use tracelight_files as files;
 use tracelight_files::{Picture, stands_for_several};
 use tracelight_formats::ReadOptions;
+use tracelight_operator::Bar;
 use tracelight_picture::Source;
 use tracelight_pipeline::{Tracing, page, place, sketch};
 use tracelight_report as report;
@@ -23,7 +24,6 @@ use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::wall::WallArgs;
 use crate::named;
-use tracelight_operator::Bar;
 
 /// Find the strokes of pictures, without a rig
 #[derive(Args, Debug)]

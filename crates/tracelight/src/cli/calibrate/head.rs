@@ -7,6 +7,7 @@ use tracelight_eye::room::{Furnished, RoomRequest};
 use tracelight_eye::told::{json, text};
 use tracelight_eye::wall::{see_wall, well_exposed};
 use tracelight_files as files;
+use tracelight_operator::Bar;
 use tracelight_rig::PanTilt;
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::head::{HeadFile, HeadScore, KnownHead, NewHead};
@@ -19,7 +20,6 @@ use crate::cli::ending::toml;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::named;
-use tracelight_operator::Bar;
 
 /// Position and direction of the head, from dots that it draws and a camera sees
 #[derive(Args, Debug)]

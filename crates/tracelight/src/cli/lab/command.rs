@@ -6,10 +6,9 @@ use tracelight_chart as chart;
 use tracelight_experiment::table::Log;
 use tracelight_experiment::{Experiment, Filed, Finding, Plotted, svg};
 use tracelight_files as files;
-use tracelight_task::{Failure, Stop, Task};
+use tracelight_task::{Failure, Stop};
 
-use crate::cli::answer::{Answer, Voice};
-use tracelight_operator::Bar;
+use crate::cli::answer::{Answer, Voice, watched};
 
 /// A command of the bench.
 pub(super) trait LabCommand {
@@ -45,12 +44,6 @@ pub(super) fn filed<E: Experiment<Finding: Filed>>(
 /// What it came to.
 pub(super) fn tried<E: Experiment>(request: E, voice: Voice, stop: &Stop) -> Result<E::Finding, Failure> {
     watched(voice, stop, |task| request.run(task))
-}
-
-/// What work comes to that tells how far it is.
-pub(super) fn watched<T>(voice: Voice, stop: &Stop, work: impl FnOnce(Task<'_>) -> T) -> T {
-    let bar = Bar::new(voice.quiet);
-    work(Task { progress: &bar, stop })
 }
 
 /// Leaves a finding's files in a folder, which is made if missing.

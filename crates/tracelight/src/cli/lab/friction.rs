@@ -9,7 +9,7 @@ use tracelight_task::{Failure, Stop};
 use super::command::{self, LabCommand};
 use super::rig_out;
 use super::trials::{TrialArgs, leave_log};
-use crate::cli::answer::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice, watched};
 
 /// Identify friction from constant-voltage tests as in the 2006 report, show the flaw of that method, and fit the full curves instead
 #[derive(Args, Debug)]
@@ -44,7 +44,7 @@ impl LabCommand for FrictionArgs {
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
         self.trials.rig.may_save(self.save)?;
         let trials = self.trials.trials()?;
-        let seen = command::watched(self.voice, stop, |task| trials.seen(task))?;
+        let seen = watched(self.voice, stop, |task| trials.seen(task))?;
         leave_log(&seen, &self.out)?;
         let finding = command::tried(Request(seen), self.voice, stop)?;
         command::leave(&finding, &self.out)?;

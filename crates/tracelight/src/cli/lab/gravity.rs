@@ -9,7 +9,7 @@ use tracelight_task::{Failure, Stop};
 use super::command::{self, LabCommand};
 use super::rig_out;
 use super::trials::{TrialArgs, leave_log};
-use crate::cli::answer::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice, watched};
 
 /// Identify what gravity does to tilt, from how voltages turn it against its weight
 #[derive(Args, Debug)]
@@ -38,7 +38,7 @@ impl LabCommand for GravityArgs {
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
         let trials = of_tilt(self.trials.trials()?)?;
         self.trials.rig.may_save(self.save)?;
-        let seen = command::watched(self.voice, stop, |task| trials.seen(task))?;
+        let seen = watched(self.voice, stop, |task| trials.seen(task))?;
         leave_log(&seen, &self.out)?;
         let finding = command::tried(Request(seen), self.voice, stop)?;
         command::leave(&finding, &self.out)?;

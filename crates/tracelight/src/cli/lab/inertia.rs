@@ -9,7 +9,7 @@ use tracelight_task::{Failure, Stop};
 use super::command::{self, LabCommand};
 use super::rig_out;
 use super::trials::{TrialArgs, leave_log};
-use crate::cli::answer::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice, watched};
 
 /// Identify what each joint's inertia is, from how fast voltages speed it up
 #[derive(Args, Debug)]
@@ -37,7 +37,7 @@ impl LabCommand for InertiaArgs {
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
         self.trials.rig.may_save(self.save)?;
         let trials = self.trials.trials()?;
-        let seen = command::watched(self.voice, stop, |task| trials.seen(task))?;
+        let seen = watched(self.voice, stop, |task| trials.seen(task))?;
         leave_log(&seen, &self.out)?;
         let finding = command::tried(Request(seen), self.voice, stop)?;
         rig_out::written(&finding, &self.out, self.trials.rig.name(), self.save, self.voice)

@@ -3,11 +3,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use tracelight_book::{Book, CommandLine, Done};
 use tracelight_files as files;
-use tracelight_task::{Failure, Stop, Task};
+use tracelight_task::{Failure, Stop};
 
 use super::command::make_folder;
-use crate::cli::answer::{Answer, Performs, Voice};
-use tracelight_operator::Bar;
+use crate::cli::answer::{Answer, Performs, Voice, watched};
 
 /// Reproduce the figures and tables of the 2006 report on one page, its numbers beside ours, with what explains each difference
 #[derive(Args, Debug)]
@@ -29,8 +28,7 @@ pub(super) fn run(args: &ReproduceArgs, perform: Performs, stop: &Stop) -> Resul
     for (path, bytes) in book.given()? {
         files::write(&path.display().to_string(), bytes)?;
     }
-    let bar = Bar::new(args.voice.quiet);
-    let made = book.make(Task { progress: &bar, stop }, |line| done(line, perform, stop))?;
+    let made = watched(args.voice, stop, |task| book.make(task, |line| done(line, perform, stop)))?;
     let index = args.out.join("index.html").display().to_string();
     files::write(&index, &made.page)?;
     Ok(Answer::either(args.voice, || made.text(&index), || made.json(&index)))
