@@ -51,6 +51,8 @@ fn axis(
     AxisConfig {
         torque_nm_per_v,
         limit_v: 10.0,
+        back_emf_v_s_per_rad: 0.0,
+        dead_band_v: 0.0,
         count_rad: 0.0015339808,
         friction: FrictionModel { viscous_pos, viscous_neg, coulomb_pos_nm, coulomb_neg_nm },
         unknown_nm: coulomb_pos_nm,

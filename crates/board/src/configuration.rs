@@ -242,6 +242,8 @@ fn visit_axis(axis: &mut AxisConfig, words: &mut impl Words) {
     let AxisConfig {
         torque_nm_per_v,
         limit_v,
+        back_emf_v_s_per_rad,
+        dead_band_v,
         count_rad,
         friction,
         unknown_nm,
@@ -254,6 +256,7 @@ fn visit_axis(axis: &mut AxisConfig, words: &mut impl Words) {
         limits,
     } = axis;
     [torque_nm_per_v, limit_v].into_iter().for_each(|value| words.divisor(value));
+    [back_emf_v_s_per_rad, dead_band_v].into_iter().for_each(|value| words.positive(value));
     words.real(count_rad, COUNT_RAD);
     let FrictionModel { viscous_pos, viscous_neg, coulomb_pos_nm, coulomb_neg_nm } = friction;
     [viscous_pos, viscous_neg, coulomb_pos_nm, coulomb_neg_nm].into_iter().for_each(|value| words.any(value));
@@ -392,6 +395,8 @@ fn blank() -> Config {
     let axis = AxisConfig {
         torque_nm_per_v: 1.0,
         limit_v: 1.0,
+        back_emf_v_s_per_rad: 0.0,
+        dead_band_v: 0.0,
         count_rad: 1.0,
         friction: FrictionModel::default(),
         unknown_nm: 0.0,

@@ -12,10 +12,15 @@ use crate::watch::MotorRating;
 /// One axis: motor, encoder, friction, observer, law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisConfig {
-    /// Joint torque per volt of command, N m/V.
+    /// Joint torque per volt of command beyond the amplifier's dead band, at standstill, N m/V.
     pub torque_nm_per_v: f32,
-    /// Largest command, V.
+    /// Largest command beyond the dead band, V.
     pub limit_v: f32,
+    /// Voltage of the turning motor against an amplifier that gives one, as volts of command for each rad/s, V s/rad; 0 for one that gives a current. What
+    /// it takes from the torque is part of `friction`: here it tells how much current flows.
+    pub back_emf_v_s_per_rad: f32,
+    /// Command of which nothing comes, either sign, V.
+    pub dead_band_v: f32,
     /// Width of one encoder count, rad.
     pub count_rad: f32,
     /// The friction model.
@@ -38,4 +43,21 @@ pub struct AxisConfig {
     pub rating: MotorRating,
     /// What the joint may do.
     pub limits: JointLimits,
+}
+
+impl AxisConfig {
+    /// The command at the amplifier of which that much comes, V: it is beyond the dead band, unless nothing is to come.
+    pub fn command_v(&self, beyond_v: f32) -> f32 {
+        if beyond_v == 0.0 { 0.0 } else { beyond_v + self.dead_band_v.copysign(beyond_v) }
+    }
+
+    /// What comes of a command at the amplifier, V: what it is beyond the dead band.
+    pub fn beyond_v(&self, command_v: f32) -> f32 {
+        (command_v.abs() - self.dead_band_v).max(0.0).copysign(command_v)
+    }
+
+    /// Current of the motor for what comes of its command, at a speed, as a share of the largest at standstill.
+    pub(crate) fn current_share(&self, beyond_v: f32, rate_rad_s: f32) -> f32 {
+        (beyond_v - self.back_emf_v_s_per_rad * rate_rad_s) / self.limit_v
+    }
 }

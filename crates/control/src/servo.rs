@@ -118,7 +118,7 @@ impl Servo {
         }
     }
 
-    /// Volts for this tick; none for joints that are told where to be.
+    /// Commands of the amplifiers for this tick, V; none for joints that are told where to be.
     pub fn drive(&mut self, config: &Config, reference: &Reference) -> PanTilt<f32> {
         if config.drive.is_open_loop() {
             return self.tell(&reference.now);
@@ -141,8 +141,8 @@ impl Servo {
             limited
         });
         self.sound = sound;
-        self.apply(config, volts);
-        volts
+        self.push(config, volts);
+        PanTilt::from_fn(|j| config.axes[j].command_v(volts[j]))
     }
 
     /// Tells joints where to be. A number that is none leaves them where they are.
@@ -154,9 +154,14 @@ impl Servo {
         PanTilt::default()
     }
 
-    /// Volts that something else decided on for this tick: a record is played.
+    /// Commands of the amplifiers that something else decided on for this tick, V: a record is played.
     pub fn apply(&mut self, config: &Config, command_v: PanTilt<f32>) {
-        self.torque_nm = PanTilt::from_fn(|j| command_v[j] * config.axes[j].torque_nm_per_v);
+        self.push(config, PanTilt::from_fn(|j| config.axes[j].beyond_v(command_v[j])));
+    }
+
+    /// Volts beyond the amplifiers' dead bands for this tick.
+    fn push(&mut self, config: &Config, beyond_v: PanTilt<f32>) {
+        self.torque_nm = PanTilt::from_fn(|j| beyond_v[j] * config.axes[j].torque_nm_per_v);
     }
 
     /// No volts in this tick; joints that are told where to be stay.

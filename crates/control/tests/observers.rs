@@ -17,6 +17,8 @@ fn axis(observer: ObserverConfig) -> AxisConfig {
     AxisConfig {
         torque_nm_per_v: 0.0774,
         limit_v: 10.0,
+        back_emf_v_s_per_rad: 0.0,
+        dead_band_v: 0.0,
         count_rad: COUNT_RAD as f32,
         friction: FrictionModel::default(),
         unknown_nm: 0.03,

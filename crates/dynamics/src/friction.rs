@@ -30,6 +30,12 @@ impl Friction {
         self.coulomb_pos_nm.max(-self.coulomb_neg_nm)
     }
 
+    /// With that much more viscous friction either way, N m s/rad.
+    #[must_use]
+    pub fn with_viscous(self, more: f64) -> Self {
+        Self { viscous_pos: self.viscous_pos + more, viscous_neg: self.viscous_neg + more, ..self }
+    }
+
     /// Torque that a motion at `rate_rad_s` costs, N m; zero at rest, where friction takes any value between the two
     /// intercepts.
     pub fn torque(&self, rate_rad_s: f64) -> f64 {

@@ -94,7 +94,7 @@ impl Request {
         let motor = rig.model.motors[joint];
         let mut head = head_alone(rig, joint, Mounting::Fixture, self.seed);
         let mut turn = |rate_rad_s: f64| {
-            let hold_v = motor.volts_for(rig.model.friction[joint].torque(rate_rad_s));
+            let hold_v = motor.volts_for(rig.model.felt_friction(joint).torque(rate_rad_s));
             // gently, where it is to turn slowly
             let start_v = (2.0 + rate_rad_s.abs()) * hold_v.abs().max(0.01 * motor.limit_v);
             let how = Spin {

@@ -109,7 +109,7 @@ impl Request {
         let rig = &self.rig;
         let joint = self.joint;
         let motor = rig.model.motors[joint];
-        let bias_v = motor.volts_for(rig.model.friction[joint].torque(self.speed_rad_s));
+        let bias_v = motor.volts_for(rig.model.felt_friction(joint).torque(self.speed_rad_s));
         if bias_v.abs() + self.amplitude_v > motor.limit_v {
             let message = format!(
                 "{:.2} V to turn with {} rad/s and {} V of sines are more than the {} V of the amplifier",
@@ -172,7 +172,7 @@ fn model(
     speed_rad_s: f64,
     tick_s: f64,
 ) -> Result<TransferFunction, LinearError> {
-    let friction = &rig.model.friction[joint];
+    let friction = rig.model.felt_friction(joint);
     let viscous = if speed_rad_s > 0.0 { friction.viscous_pos } else { friction.viscous_neg };
     let above = Polynomial::new(vec![rig.model.motors[joint].torque_nm_per_v]);
     let below = Polynomial::new(vec![rig.model.own_inertia_kg_m2()[joint], viscous, 0.0]);

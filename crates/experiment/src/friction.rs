@@ -138,7 +138,8 @@ impl Found {
 
     /// Puts it into a model. Friction that comes out below nothing is nothing.
     fn tell(&self, rig: &mut RigConfig) {
-        let friction = &mut rig.model.friction[self.subject.joint];
+        let joint = self.subject.joint;
+        let mut friction = rig.model.friction_at_amplifier(joint);
         let [pos, neg] = self.sides();
         if let Some(pos) = pos {
             (friction.viscous_pos, friction.coulomb_pos_nm) =
@@ -148,5 +149,6 @@ impl Found {
             (friction.viscous_neg, friction.coulomb_neg_nm) =
                 (neg.viscous.value.max(0.0), neg.coulomb_nm.value.min(0.0));
         }
+        rig.model.set_friction_at_amplifier(joint, friction);
     }
 }

@@ -84,7 +84,10 @@ impl HeadChoice {
         const HALF_RANGE_RAD: f64 = 0.463_647_609_000_806_1;
         let (name, bodies, viscous) = match &self.masses {
             Masses::Rig(rig) => {
-                let viscous = rig.model.friction.map(|f| 0.5 * (f.viscous_pos + f.viscous_neg));
+                let viscous = PanTilt::from_fn(|j| {
+                    let felt = rig.model.felt_friction(j);
+                    0.5 * (felt.viscous_pos + felt.viscous_neg)
+                });
                 (format!("rig {}", rig.name), rig.model.bodies, viscous)
             }
             Masses::Set(set) => {

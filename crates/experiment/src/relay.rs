@@ -2,6 +2,7 @@
 
 mod view;
 
+use tracelight_dynamics::Motor;
 use tracelight_lab::{Relay, RelayPid, StepFigures, Swing, swing};
 use tracelight_rig::Joint;
 use tracelight_sim::{
@@ -58,7 +59,7 @@ impl Experiment for Request {
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
         let (rig, joint, to_rad) = (&self.rig, self.joint, self.to_rad);
         let (swing, relay) = self.swung()?;
-        let torque_nm_per_v = rig.model.motors[joint].torque_nm_per_v;
+        let torque_nm_per_v = relayed_nm_per_v(&rig.model.motors[joint], relay.level_v);
         let pid = swing
             .pid(&relay, torque_nm_per_v, self.crossover_rad_s, (self.phase_margin_rad, self.integral))
             .map_err(|e| Failure::failed("relay", e))?;
@@ -76,6 +77,11 @@ impl Experiment for Request {
     }
 }
 
+/// Torque that a relay's level makes beyond what holds the joint, for each volt of it, N m/V.
+fn relayed_nm_per_v(motor: &Motor, level_v: f64) -> f64 {
+    motor.torque_nm_per_v * (1.0 - motor.dead_band_v / level_v)
+}
+
 impl Request {
     fn swung(&self) -> Result<(Swing, Relay), Failure> {
         let Self { rig, joint, mounting, level_v, .. } = self;
@@ -89,10 +95,18 @@ impl Request {
         let relay = Relay {
             level_v,
             hysteresis_rad: self.hysteresis_rad.map_or(1.5 * count_rad, f64::abs),
-            hold_v: motor.volts_for(pull_nm),
+            // what holds it is between the relay's two levels, which are beyond the dead band
+            hold_v: pull_nm / motor.torque_nm_per_v,
             limit_v: motor.limit_v,
             count_rad,
         };
+        if level_v <= motor.dead_band_v {
+            let message = format!(
+                "--level {level_v} V is within the dead band of {joint}'s amplifier, {} V",
+                motor.dead_band_v
+            );
+            return Err(Failure::usage("usage", message));
+        }
         if level_v + relay.hold_v.abs() > motor.limit_v {
             let message = format!(
                 "--level {level_v} V and {:.2} V to hold {joint} are more than the {} V of its amplifier",

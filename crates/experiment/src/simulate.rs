@@ -116,7 +116,7 @@ impl Request {
             if let Some(cap_nm) = self.cap_nm {
                 for joint in Joint::BOTH {
                     let motor = &mut model.motors[joint];
-                    motor.limit_v = cap_nm / motor.torque_nm_per_v;
+                    motor.limit_v = motor.dead_band_v + cap_nm / motor.torque_nm_per_v;
                 }
             }
         }
@@ -169,8 +169,7 @@ impl Request {
 
     fn by_law(&self, rig: &RigConfig, array: &MotionArray) -> Vec<ScopeTick> {
         let ticks = follow_array(rig, array, self.rest_s, self.seed);
-        let torque_nm =
-            |tick: &BenchTick, j| f64::from(tick.command_v[j]) * rig.model.motors[j].torque_nm_per_v;
+        let torque_nm = |tick: &BenchTick, j| rig.model.motors[j].torque_nm(f64::from(tick.command_v[j]));
         let shown = |(number, tick): (usize, &BenchTick)| ScopeTick {
             set_rad: array.at(number as f64 * TICK_F64_S).map(|motion| motion.position_rad),
             angle_rad: tick.angle_rad,

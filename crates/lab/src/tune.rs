@@ -68,9 +68,12 @@ impl Demand {
         let head = |factor: f64, lag_s: f64| {
             let mut head = rig.clone();
             for joint in Joint::BOTH {
-                head.truth.model.motors[joint].torque_nm_per_v *= factor;
-                head.truth.model.motors[joint].limit_v /= factor;
-                head.model.motors[joint].limit_v /= factor;
+                let truth = &mut head.truth.model.motors[joint];
+                truth.torque_nm_per_v *= factor;
+                for v in [&mut truth.limit_v, &mut truth.dead_band_v, &mut truth.back_emf_v_s_per_rad] {
+                    *v /= factor;
+                }
+                head.model.motors[joint].limit_v = truth.limit_v;
             }
             head.truth.wear.current_lag_s += lag_s;
             head

@@ -1,3 +1,4 @@
+use tracelight_dynamics::Motor;
 use tracelight_maths::{exp, sin};
 use tracelight_rig::{
     Actuation, Head, Input, InputState, Inputs, Joint, Measurement, PanTilt, Sensed, TICK_F64_S,
@@ -30,7 +31,7 @@ pub struct Plant {
     // what it is
     mechanism: Mechanism,
     torque_nm_per_v: PanTilt<f64>,
-    limit_v: PanTilt<f64>,
+    motors: PanTilt<Motor>,
     rotor_kg_m2: PanTilt<f64>,
     wear: Wear,
     /// Where cables do not pull, rad.
@@ -110,7 +111,7 @@ impl Plant {
         Self {
             mechanism: Mechanism::new(config, ripple_phase, rest),
             torque_nm_per_v,
-            limit_v: config.motors.map(|m| m.limit_v),
+            motors: config.motors,
             rotor_kg_m2: config.bodies.rotor_kg_m2,
             wear: *wear,
             cable_rest_rad,
@@ -218,7 +219,7 @@ impl Plant {
         if self.rotor_kg_m2.pan.min(self.rotor_kg_m2.tilt) <= 0.0 {
             return;
         }
-        let limit_nm = self.limit_v[joint] * self.torque_nm_per_v[joint];
+        let limit_nm = self.motors[joint].most_v() * self.torque_nm_per_v[joint];
         let mut belted = self.mechanism.on_belts(&self.state, self.rotor_kg_m2);
         belted.loosen(joint, Teeth::new(belt, limit_nm));
         let encoders_at_motors = self.wear.encoders_at_motors;
@@ -230,7 +231,7 @@ impl Plant {
         self.gains[joint].weaken(weakening);
     }
 
-    /// What the motors' currents make at the joints now, N m.
+    /// What the motors make at the joints now, N m; what their own voltages take from it acts as friction does.
     pub const fn motor_nm(&self) -> PanTilt<f64> {
         self.current_nm
     }
@@ -357,8 +358,7 @@ impl Plant {
 impl Head for Plant {
     fn exchange(&mut self, actuation: &Actuation) -> Sensed {
         let asked = PanTilt::from_fn(|j| {
-            let limit = self.limit_v[j];
-            f64::from(actuation.command_v[j]).clamp(-limit, limit) * self.torque_nm_per_v[j]
+            self.motors[j].beyond_v(f64::from(actuation.command_v[j])) * self.torque_nm_per_v[j]
         });
         for joint in Joint::BOTH {
             self.encoders[joint].begin_tick();
@@ -383,10 +383,10 @@ fn carried_kg_m2(config: &PlantConfig) -> PanTilt<f64> {
 mod tests {
     use super::*;
     use crate::{EncoderConfig, FootConfig, GyroscopeConfig, RelayConfig};
-    use tracelight_dynamics::{Friction, HeadBodies, Motor};
+    use tracelight_dynamics::{Friction, HeadBodies};
 
     fn config() -> PlantConfig {
-        let motor = Motor { torque_nm_per_v: 0.0774, limit_v: 10.0 };
+        let motor = Motor::by_current(0.0774, 10.0);
         let friction = Friction::symmetric(0.001, 0.05);
         PlantConfig {
             bodies: HeadBodies::set_a(),

@@ -54,6 +54,7 @@ pub(crate) const STIFFNESS: &[Unit] = &[("Nm/rad", 1.0), ("mNm/rad", 1e-3)];
 pub(crate) const VISCOUS: &[Unit] = &[("Nms/rad", 1.0), ("mNms/rad", 1e-3)];
 const GAIN: &[Unit] = &[("Nm/V", 1.0), ("mNm/V", 1e-3)];
 const VOLTAGE: &[Unit] = &[("V", 1.0), ("mV", 1e-3)];
+const BACK_EMF: &[Unit] = &[("Vs/rad", 1.0), ("mVs/rad", 1e-3)];
 
 type Real = fn(&mut Model) -> &mut f64;
 
@@ -155,6 +156,20 @@ macro_rules! drive {
             real(concat!($name, ".motor.limit"), VOLTAGE, (1e-3, 1e3), "largest command", |m| {
                 &mut m.motors.$joint.limit_v
             }),
+            real(
+                concat!($name, ".motor.back_emf"),
+                BACK_EMF,
+                (0.0, 1e3),
+                "volts of command that the turning motor works against, of an amplifier that gives a voltage (H-bridge); 0 of one that gives a current",
+                |m| &mut m.motors.$joint.back_emf_v_s_per_rad,
+            ),
+            real(
+                concat!($name, ".motor.dead_band"),
+                VOLTAGE,
+                (0.0, 1e3),
+                "command of which nothing comes, either sign",
+                |m| &mut m.motors.$joint.dead_band_v,
+            ),
             real(
                 concat!($name, ".friction.viscous_pos"),
                 VISCOUS,

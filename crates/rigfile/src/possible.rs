@@ -90,6 +90,15 @@ fn impossible_belts(config: &RigConfig) -> Option<String> {
 /// What no head can be, however sound each number is by itself.
 fn impossible(model: &Model) -> Option<String> {
     const STRONGEST_COUPLING: f64 = 0.5; // of M11 and M22: the plant resolves friction joint by joint
+    for (joint, motor) in [("pan", &model.motors.pan), ("tilt", &model.motors.tilt)] {
+        let (dead_band_v, limit_v) = (motor.dead_band_v, motor.limit_v);
+        if dead_band_v >= limit_v {
+            return Some(format!(
+                "{joint}.motor.dead_band: nothing comes of less than {dead_band_v} V, and the largest command is {limit_v} V: dead_band must be less than \
+                 limit"
+            ));
+        }
+    }
     let lumped = model.bodies.lumped();
     for degrees in -180..=180 {
         let mass = lumped.mass(f64::from(degrees).to_radians());

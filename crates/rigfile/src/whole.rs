@@ -12,7 +12,11 @@ pub(crate) const BASE: &str = "base";
 
 /// Keys, or beginnings of keys, that came when rig files without them were about already. A file that has none of a row is older
 /// than the row, not cut off: what is written today ends with keys that are older than all of them.
-const CAME_LATER: [&str; 8] = [
+const CAME_LATER: [&str; 12] = [
+    "model.pan.motor.back_emf",
+    "model.pan.motor.dead_band",
+    "model.tilt.motor.back_emf",
+    "model.tilt.motor.dead_band",
     "model.enable.",
     "model.foot.",
     "truth.gyroscope.",
@@ -203,7 +207,7 @@ mod tests {
         assert_eq!(file.rig, RigConfig::report());
         let remark = file.remark.unwrap();
         assert!(
-            remark.contains("older than 14 of today's keys (model.enable.on to safety.turned)"),
+            remark.contains("older than 18 of today's keys (model.enable.on to safety.turned)"),
             "{remark}"
         );
         assert_eq!(read("new.toml", whole.clone().into_bytes()).unwrap().remark, None);

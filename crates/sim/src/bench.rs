@@ -30,7 +30,7 @@ pub struct BenchTick {
     pub measured: PanTilt<Measurement>,
     /// Estimates of the observers.
     pub estimates: PanTilt<Estimate>,
-    /// What is done about it, V.
+    /// Commands at the amplifiers, V.
     pub command_v: PanTilt<f32>,
 }
 
@@ -89,11 +89,11 @@ impl<H: Truth> Bench<H> {
             let angle_rad = f64::from(bench.measured[joint].count) * f64::from(axis.count_rad);
             let setpoint_rad = f64::from(reference.now[joint].position_rad);
             let (nm_per_v, limit_v) = (f64::from(axis.torque_nm_per_v), f64::from(axis.limit_v));
-            let asked_v =
-                f64::from(command_v[joint]) + law.torque_nm(memory, setpoint_rad, angle_rad) / nm_per_v;
+            let beyond_v = f64::from(axis.beyond_v(command_v[joint]));
+            let asked_v = beyond_v + law.torque_nm(memory, setpoint_rad, angle_rad) / nm_per_v;
             let given_v = asked_v.clamp(-limit_v, limit_v);
             law.settle(memory, (given_v - asked_v) * nm_per_v);
-            command_v[joint] = given_v as f32;
+            command_v[joint] = axis.command_v(given_v as f32);
             bench.servo.apply(&bench.config, command_v);
             command_v
         })

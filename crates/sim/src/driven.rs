@@ -40,8 +40,7 @@ impl RigConfig {
             }
         };
         let encoder = EncoderConfig { counts_per_rev: steps_per_rev(step_rad), edge_stamps: false };
-        let motors = torque_nm
-            .map(|torque_nm| Motor { torque_nm_per_v: torque_nm / FULL_COMMAND_V, limit_v: FULL_COMMAND_V });
+        let motors = torque_nm.map(|torque_nm| Motor::by_current(torque_nm / FULL_COMMAND_V, FULL_COMMAND_V));
         for model in [&mut self.model, &mut self.truth.model] {
             model.motors = motors;
             if drive.kind == DriveKind::Stepper {

@@ -21,6 +21,8 @@ const RANGE_MARGIN_COUNTS: f64 = 3.0;
 const MOTION_MARGIN: f64 = 1.1;
 /// Factor for the acceleration: a sigmoid begins and ends with a jump of its speed, which a segment spreads over a tick or two.
 const ACCELERATION_MARGIN: f64 = 4.0;
+/// Share of the speed at which a motor turns by itself that a plan gives its joint.
+const MOST_OF_ALONE: f64 = 0.8;
 /// Furthest that a segment may let a joint stray, rad: 0.1 m on a target 1 m away, twice what any rig file may ask for. Routines in the dark
 /// ask for half of it.
 const TOLERANCE_LIMIT_RAD: f64 = 0.1;
@@ -43,10 +45,10 @@ impl RigConfig {
     pub fn machine(&self, pose: HeadPose) -> Machine {
         Machine {
             lumped: self.model.bodies.lumped(),
-            friction: self.model.friction,
+            friction: PanTilt::from_fn(|j| self.model.felt_friction(j)),
             motors: self.model.motors,
             torque_share: self.motion.torque_share,
-            speed_limit_rad_s: self.motion.speed_limit_rad_s,
+            speed_limit_rad_s: PanTilt::from_fn(|j| self.speed_limit_rad_s(j)),
             acceleration_limit_rad_s2: self.motion.acceleration_limit_rad_s2,
             jerk_limit_rad_s3: self.motion.jerk_limit_rad_s3,
             tolerance_limit_rad: TOLERANCE_LIMIT_RAD,
@@ -55,6 +57,15 @@ impl RigConfig {
             relay_on_ticks: ticks(self.model.relay.on_s),
             relay_off_ticks: ticks(self.model.relay.off_s),
         }
+    }
+
+    /// Highest speed that a plan gives a joint, rad/s: not so high that the motor's own voltage leaves its amplifier nothing to brake or hurry it with.
+    fn speed_limit_rad_s(&self, joint: Joint) -> f64 {
+        let motor = &self.model.motors[joint];
+        let wished = self.motion.speed_limit_rad_s[joint];
+        // infinite where the motor has none
+        let alone = motor.most_v() / motor.back_emf_v_s_per_rad;
+        wished.min(MOST_OF_ALONE * self.motion.torque_share * alone)
     }
 
     /// What the controller believes, in its own `f32`.
@@ -109,9 +120,11 @@ impl RigConfig {
         let inertia = self.model.own_inertia_kg_m2()[joint];
         AxisConfig {
             torque_nm_per_v: motor.torque_nm_per_v as f32,
-            limit_v: motor.limit_v as f32,
+            limit_v: motor.most_v() as f32,
+            back_emf_v_s_per_rad: motor.back_emf_v_s_per_rad as f32,
+            dead_band_v: motor.dead_band_v as f32,
             count_rad: self.model.encoder.count_rad() as f32,
-            friction: friction_model(&self.model.friction[joint]),
+            friction: friction_model(&self.model.felt_friction(joint)),
             unknown_nm: self.model.unknown_nm(joint) as f32,
             scale_tolerance: control.scale_tolerance as f32,
             quirks: self.quirks(joint),
@@ -125,7 +138,7 @@ impl RigConfig {
             limits: JointLimits {
                 lower_rad: (lower - margin) as f32,
                 upper_rad: (upper + margin) as f32,
-                speed_rad_s: (MOTION_MARGIN * self.motion.speed_limit_rad_s[joint]) as f32,
+                speed_rad_s: (MOTION_MARGIN * self.speed_limit_rad_s(joint)) as f32,
                 acceleration_rad_s2: (ACCELERATION_MARGIN * self.motion.acceleration_limit_rad_s2[joint])
                     as f32,
             },
@@ -142,7 +155,7 @@ impl RigConfig {
             return None;
         }
         let motor = &self.model.motors[joint];
-        let most_rad_s2 = motor.torque_nm_per_v * motor.limit_v / self.model.own_inertia_kg_m2()[joint];
+        let most_rad_s2 = motor.torque_limit_nm() / self.model.own_inertia_kg_m2()[joint];
         let count_rad = self.model.encoder.count_rad();
         Some(Creep {
             below_rad_s: (CREEP_COUNTS_S * count_rad) as f32,
@@ -178,10 +191,10 @@ impl RigConfig {
 
 impl Model {
     /// A plant that is so, with that wear.
-    pub(crate) const fn plant_config(&self, gyroscope: GyroscopeConfig, wear: Wear) -> PlantConfig {
+    pub(crate) fn plant_config(&self, gyroscope: GyroscopeConfig, wear: Wear) -> PlantConfig {
         PlantConfig {
             bodies: self.bodies,
-            friction: self.friction,
+            friction: PanTilt::from_fn(|j| self.felt_friction(j)),
             motors: self.motors,
             encoder: self.encoder,
             relay: self.relay,

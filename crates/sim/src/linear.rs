@@ -34,7 +34,10 @@ impl LinearHead {
             (gravity(pose_rad.tilt + STEP_RAD) - gravity(pose_rad.tilt - STEP_RAD)) / (2.0 * STEP_RAD);
         Self {
             inertia_kg_m2: lumped.mass(pose_rad.tilt).own_inertia(),
-            viscous: truth.friction.map(|f| 0.5 * (f.viscous_pos + f.viscous_neg)),
+            viscous: PanTilt::from_fn(|j| {
+                let felt = truth.felt_friction(j);
+                0.5 * (felt.viscous_pos + felt.viscous_neg)
+            }),
             stiffness: PanTilt::new(0.0, slope),
             torque_nm_per_v: truth.motors.map(|m| m.torque_nm_per_v),
             angle_rad: PanTilt::default(),
@@ -49,7 +52,7 @@ impl LinearHead {
         for joint in Joint::BOTH {
             let axis = &mut config.axes[joint];
             axis.count_rad = (std::f64::consts::TAU / COUNTS_PER_REV) as f32;
-            axis.limit_v = NO_LIMIT_V;
+            (axis.limit_v, axis.dead_band_v) = (NO_LIMIT_V, 0.0);
             let viscous = self.viscous[joint] as f32;
             axis.friction =
                 FrictionModel { viscous_pos: viscous, viscous_neg: viscous, ..FrictionModel::default() };

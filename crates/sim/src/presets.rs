@@ -22,11 +22,16 @@ const PAN_A_PER_V: f64 = 0.08;
 const TILT_A_PER_V: f64 = 0.1;
 /// Range of such amplifiers' inputs, V.
 const COMMAND_LIMIT_V: f64 = 10.0;
+/// Supply of an H-bridge, V, resistance of the winding of a motor of that constant, ohm, and what the dead time of the bridge's switches takes, V:
+/// 2 µs of 50.
+const BRIDGE_SUPPLY_V: f64 = 12.0;
+const WINDING_OHM: f64 = 8.0;
+const BRIDGE_DEAD_BAND_V: f64 = 0.48;
 
 impl RigConfig {
     /// Every preset, in the order they are listed.
     pub fn presets() -> Vec<Self> {
-        vec![Self::report(), Self::report_b(), Self::worn(), Self::stepper(), Self::servo()]
+        vec![Self::report(), Self::report_b(), Self::worn(), Self::bridge(), Self::stepper(), Self::servo()]
     }
 
     /// The preset of that name.
@@ -135,6 +140,31 @@ impl RigConfig {
     }
 }
 
+/// A head on amplifiers that give a voltage.
+impl RigConfig {
+    /// Returns the report's head on two H-bridges with a supply of 12 V, in place of amplifiers that give a current: torque fades as the motor speeds up, and
+    /// nothing comes of the smallest commands.
+    pub fn bridge() -> Self {
+        let report = Self::report();
+        let bridge = Motor {
+            torque_nm_per_v: JOINT_TORQUE_NM_PER_A / WINDING_OHM,
+            limit_v: BRIDGE_SUPPLY_V,
+            // a motor's constant is the same in V s/rad as in N m/A
+            back_emf_v_s_per_rad: JOINT_TORQUE_NM_PER_A,
+            dead_band_v: BRIDGE_DEAD_BAND_V,
+        };
+        let model = Model { motors: PanTilt::new(bridge, bridge), ..report.model };
+        Self {
+            name: "bridge".into(),
+            description:
+                "the rig of the 2006 report on H-bridges, which give a voltage: 12 V, with a dead band".into(),
+            model,
+            truth: Truth { model, ..report.truth },
+            ..report
+        }
+    }
+}
+
 /// Heads without encoders.
 impl RigConfig {
     /// Returns a head on two NEMA 17 stepper motors behind belts.
@@ -208,8 +238,7 @@ fn small_model(pan_kg: f64, rotor_kg_m2: f64) -> Model {
 }
 
 fn report_model() -> Model {
-    let motor =
-        |a_per_v: f64| Motor { torque_nm_per_v: a_per_v * JOINT_TORQUE_NM_PER_A, limit_v: COMMAND_LIMIT_V };
+    let motor = |a_per_v: f64| Motor::by_current(a_per_v * JOINT_TORQUE_NM_PER_A, COMMAND_LIMIT_V);
     Model {
         bodies: HeadBodies::set_a(),
         friction: PanTilt::new(

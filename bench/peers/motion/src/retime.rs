@@ -69,7 +69,7 @@ fn timed(machine: &Machine, samples: &[PathSample], smooth: Option<&[f64]>) -> R
 /// The 2006 rig: inertia and friction alone, at full torque.
 fn rig(arguments: &Arguments) -> Machine {
     const GEARED_NM_PER_A: f64 = 0.0432 * 6.3 * 2.8435;
-    let motor = |a_per_v: f64| Motor { torque_nm_per_v: a_per_v * GEARED_NM_PER_A, limit_v: 10.0 };
+    let motor = |a_per_v: f64| Motor::by_current(a_per_v * GEARED_NM_PER_A, 10.0);
     let friction = Friction::symmetric(arguments.viscous, arguments.coulomb);
     let none = PanTilt::new(f64::INFINITY, f64::INFINITY);
     Machine {

@@ -153,11 +153,18 @@ impl Watch {
             .then(|| Finding::after(Fault::HostLost, silence, config.host_lost_ticks))
     }
 
-    /// What the volts of a tick show, if anything.
-    pub(crate) fn drive(&mut self, config: &Config, command_v: &PanTilt<f32>) -> Option<Finding> {
+    /// What the commands of a tick show, V, if anything.
+    pub(crate) fn drive(
+        &mut self,
+        config: &Config,
+        servo: &Servo,
+        command_v: &PanTilt<f32>,
+    ) -> Option<Finding> {
         let faults = PanTilt::from_fn(|j| {
             let axis = &config.axes[j];
-            self.motors[j].tick(&axis.rating, command_v[j] / axis.limit_v).map(|found| found.by(j))
+            let beyond_v = axis.beyond_v(command_v[j]);
+            let current = axis.current_share(beyond_v, servo.estimates()[j].velocity_rad_s);
+            self.motors[j].tick(&axis.rating, beyond_v / axis.limit_v, current).map(|found| found.by(j))
         });
         faults.pan.or(faults.tilt)
     }

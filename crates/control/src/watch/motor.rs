@@ -11,7 +11,7 @@ pub(super) const SATURATED_TICKS: u32 = 300;
 /// How much a motor may be driven.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorRating {
-    /// Share of its amplifier's limit that it stands for ever, 0 to 1.
+    /// Share of the current at its amplifier's limit that it stands for ever, 0 to 1.
     pub continuous_share: f32,
     /// Time constant of its temperature, s.
     pub heating_s: f32,
@@ -28,13 +28,13 @@ pub(super) struct MotorWatch {
 }
 
 impl MotorWatch {
-    /// One tick with that share of its amplifier's limit, −1 to 1; the fault it shows, if any.
-    pub(super) fn tick(&mut self, rating: &MotorRating, share: f32) -> Option<Finding> {
+    /// One tick with that share of its amplifier's limit, −1 to 1, and that current as a share of the largest at standstill; the fault it shows, if any.
+    pub(super) fn tick(&mut self, rating: &MotorRating, share: f32, current: f32) -> Option<Finding> {
         let (saturated, upwards) = (share.abs() >= SATURATED, share > 0.0);
         let goes_on = saturated && upwards == self.upwards;
         self.saturated_ticks = if goes_on { self.saturated_ticks + 1 } else { u32::from(saturated) };
         self.upwards = upwards;
-        self.heat += TICK_S / rating.heating_s * (share * share - self.heat);
+        self.heat += TICK_S / rating.heating_s * (current * current - self.heat);
         let most = rating.continuous_share * rating.continuous_share;
         if self.saturated_ticks > SATURATED_TICKS {
             Some(Finding::after(Fault::AmplifierSaturated, self.saturated_ticks, SATURATED_TICKS))

@@ -55,7 +55,7 @@ impl Filed for Finding {
 
 /// A joint's figures: a column for each way they were told.
 fn table(rig: &RigConfig, one: &Found) -> String {
-    let friction = &rig.model.friction[one.subject.joint];
+    let friction = rig.model.friction_at_amplifier(one.subject.joint);
     let believed = &one.subject.believed;
     let viscous: fn(Side) -> Uncertain = |side| side.viscous;
     let coulomb: fn(Side) -> Uncertain = |side| side.coulomb_nm;

@@ -10,7 +10,7 @@ use tracelight_rig::TICK_F64_S;
 use tracelight_sim::{BenchTick, LawName};
 use tracelight_task::Failure;
 
-use super::Finding;
+use super::{Finding, relayed_nm_per_v};
 use crate::finding::{self, Plotted};
 use crate::panels::{curve, over_time};
 use crate::step_words::{figures_json, heading, row};
@@ -19,7 +19,7 @@ impl finding::Finding for Finding {
     fn text(&self) -> String {
         let Self { of, relay, swing, pid, .. } = self;
         let (rig, joint) = (&of.rig, of.joint);
-        let torque_nm_per_v = rig.model.motors[joint].torque_nm_per_v;
+        let torque_nm_per_v = relayed_nm_per_v(&rig.model.motors[joint], relay.level_v);
         let there = swing.response(relay, torque_nm_per_v);
         let (inertia_kg_m2, coulomb_nm) = swing.mass(relay, torque_nm_per_v);
         let mut text = format!(
@@ -56,7 +56,7 @@ impl finding::Finding for Finding {
         let (rig, joint) = (&of.rig, of.joint);
         let mut object = figures_json(&self.nonlinear, rig);
         object["linear"] = figures_json(&self.linear, rig);
-        let torque_nm_per_v = rig.model.motors[joint].torque_nm_per_v;
+        let torque_nm_per_v = relayed_nm_per_v(&rig.model.motors[joint], relay.level_v);
         let there = swing.response(relay, torque_nm_per_v);
         let (inertia_kg_m2, coulomb_nm) = swing.mass(relay, torque_nm_per_v);
         let swung = json!({

@@ -1,6 +1,6 @@
 //! One joint's equation of motion in numbers: what is believed, what was found, and the way between them and a rig.
 
-use tracelight_dynamics::Lumped;
+use tracelight_dynamics::{Friction, Lumped, Motor};
 use tracelight_maths::{exp, hypot, ln, powi, sin_cos};
 use tracelight_rig::{Joint, Telemetry};
 use tracelight_sim::{Cable, Identified, Quirks, RigConfig, Ripple};
@@ -38,7 +38,7 @@ const RIPPLE_SHARE: f64 = 0.1;
 /// One joint's equation of motion; everything over its inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Equations {
-    /// rad/s² a volt, 1/s each way, rad/s² each way, rad/s² at standstill, rad/s² of gravity
+    /// rad/s² a volt beyond the dead band, 1/s each way, rad/s² each way, rad/s² at standstill, rad/s² of gravity
     /// with cos and sin of tilt, of a ripple with sin and cos, of cables at zero and a radian.
     pub(super) theta: [f64; MECHANICS],
     /// How far each kind of edge lies beyond its place, counts.
@@ -65,13 +65,19 @@ pub(super) struct Balance {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Surroundings {
     lumped: Lumped,
+    motor: Motor,
     joint: Joint,
     break_away_rad_s: f64,
 }
 
 impl Surroundings {
     pub(super) fn of(rig: &RigConfig, joint: Joint, equations: &Equations) -> Self {
-        Self { lumped: rig.model.bodies.lumped(), joint, break_away_rad_s: equations.break_away_rad_s }
+        Self {
+            lumped: rig.model.bodies.lumped(),
+            motor: rig.model.motors[joint],
+            joint,
+            break_away_rad_s: equations.break_away_rad_s,
+        }
     }
 
     /// What a unit of each unknown does to the joint at an angle and a rate in a tick, and what is known without them; rad/s².
@@ -100,7 +106,7 @@ impl Surroundings {
         let way = rate_rad_s.signum();
         let pick = |yes: bool, value: f64| if yes { share * value } else { 0.0 };
         let columns = [
-            share * f64::from(told.actuation.command_v[joint]),
+            share * self.motor.beyond_v(f64::from(told.actuation.command_v[joint])),
             pick(way > 0.0, -rate_rad_s),
             pick(way < 0.0, -rate_rad_s),
             pick(way > 0.0, -1.0),
@@ -133,7 +139,7 @@ impl Equations {
     pub(super) fn of(rig: &RigConfig, joint: Joint) -> Self {
         let lumped = rig.model.bodies.lumped();
         let inertia = rig.model.own_inertia_kg_m2()[joint];
-        let friction = rig.model.friction[joint];
+        let friction = rig.model.felt_friction(joint);
         let quirks = rig.quirks_of(joint);
         let weighs = joint == Joint::Tilt;
         let weight = |part: f64| if weighs { part / inertia } else { 0.0 };
@@ -247,11 +253,13 @@ impl Equations {
         let theta = self.theta.map(|value| value * inertia);
         let model = &mut rig.model;
         model.motors[joint].torque_nm_per_v = theta[GAIN];
-        let friction = &mut model.friction[joint];
-        friction.viscous_pos = theta[VISCOUS_POS].max(0.0);
-        friction.viscous_neg = theta[VISCOUS_NEG].max(0.0);
-        friction.coulomb_pos_nm = theta[COULOMB_POS].max(0.0);
-        friction.coulomb_neg_nm = -theta[COULOMB_NEG].max(0.0);
+        let felt = Friction {
+            viscous_pos: theta[VISCOUS_POS],
+            viscous_neg: theta[VISCOUS_NEG],
+            coulomb_pos_nm: theta[COULOMB_POS].max(0.0),
+            coulomb_neg_nm: -theta[COULOMB_NEG].max(0.0),
+        };
+        model.set_felt_friction(joint, felt);
         if joint == Joint::Tilt {
             model.set_weight([theta[GRAVITY_C], theta[GRAVITY_S]]);
         }

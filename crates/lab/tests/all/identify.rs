@@ -82,6 +82,26 @@ fn the_routine_gives_back_what_thirty_heads_are_made_of() {
     assert!(break_away <= 0.06 && left <= 0.03, "{break_away} {left}");
 }
 
+/// What the motor's own voltage takes is not told for friction, nor the dead band.
+#[test]
+fn the_routine_gives_back_what_heads_on_bridges_are_made_of() {
+    for seed in 0..10 {
+        let head = Spread::USUAL.draw(&RigConfig::bridge(), seed);
+        let Identification { rig, joints } = identify(&head, &[&moved(&head, seed)]).unwrap();
+        for j in Joint::BOTH {
+            assert!(joints[j].taken, "seed {seed}, {j}: {:?}", joints[j]);
+            let (found, truth) = (&rig.model, &head.truth.model);
+            let gain = off(found, truth, j, |m, j| m.motors[j].torque_nm_per_v);
+            let coulomb = off(found, truth, j, |m, j| m.friction[j].coulomb_nm());
+            let felt = off(found, truth, j, |m, j| m.felt_friction(j).viscous_pos);
+            println!(
+                "seed {seed}, {j}: torque per volt off by {gain:.4}, Coulomb {coulomb:.4}, viscous with the motor's voltage {felt:.4}"
+            );
+            assert!(gain <= 0.001 && coulomb <= 0.01 && felt <= 0.005, "seed {seed}, {j}");
+        }
+    }
+}
+
 /// The figures of the last of some laps, on sixty heads: median rms, 95 % of the largest errors.
 fn laps(rig: &RigConfig, laps: usize) -> (f64, f64) {
     let plan = plan_of(rig, circle(0.25));

@@ -5,6 +5,7 @@
 
 mod amplifiers;
 mod belts;
+mod bridges;
 mod by_hand;
 mod closed_loop;
 mod dice;

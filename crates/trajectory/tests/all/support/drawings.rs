@@ -9,7 +9,7 @@ use tracelight_trajectory::{DarkMove, LitSpeed, Machine, Plan, PlanRequest, Shap
 pub(crate) const SPEED_M_S: f64 = 0.3048;
 
 pub(crate) fn machine() -> Machine {
-    let motor = |torque_nm_per_v| Motor { torque_nm_per_v, limit_v: 10.0 };
+    let motor = |torque_nm_per_v| Motor::by_current(torque_nm_per_v, 10.0);
     Machine {
         lumped: HeadBodies::set_a().lumped(),
         friction: PanTilt::new(Friction::symmetric(0.0009, 0.04), Friction::symmetric(0.0018, 0.058)),

@@ -12,7 +12,7 @@ use tracelight_trajectory::{Machine, PathSample, Retimed};
 
 /// The rig of the research's timing table: 0.075 kg m² at both joints, no gravity.
 pub(crate) fn bare_rig(coulomb_nm: f64, viscous: f64) -> Machine {
-    let motor = |torque_nm_per_v| Motor { torque_nm_per_v, limit_v: 10.0 };
+    let motor = |torque_nm_per_v| Motor::by_current(torque_nm_per_v, 10.0);
     Machine {
         lumped: Lumped { m11_fixed: 0.075, m22: 0.075, ..Lumped::default() },
         friction: PanTilt::new(
