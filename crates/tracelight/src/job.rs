@@ -19,12 +19,12 @@ use tracelight_sim::ByEncoders;
 use tracelight_stroke::Vec2;
 use tracelight_task::{Failure, Task};
 
-use crate::cli::by_hand::FrameName;
 use crate::cli::driving::stand_by;
 use crate::cli::eyes::SimulatedEyeName;
 use crate::cli::request::TraceArgs;
 use crate::named;
 use crate::settings;
+use tracelight_flags::FrameName;
 
 /// How a job ended.
 pub(crate) struct Outcome {

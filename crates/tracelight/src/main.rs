@@ -1,7 +1,6 @@
 //! Tracelight: give it a picture, and a pan/tilt laser head draws it on the wall, to scale.
 
 mod cli;
-mod fonts;
 mod interrupt;
 mod job;
 mod named;

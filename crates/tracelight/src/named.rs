@@ -12,7 +12,7 @@ use tracelight_rigfile::head::KnownHead;
 use tracelight_sim::{Emulation, RigConfig};
 use tracelight_task::{Failure, nearest};
 
-use crate::cli::lettering::LetteringArgs;
+use tracelight_flags::LetteringArgs;
 
 /// A picture or a drawing; `-` is standard input. What it is, its content says, not its name.
 pub(crate) fn picture(path: &str) -> Result<Source, Failure> {

@@ -9,9 +9,9 @@ use tracelight_task::Failure;
 use tracelight_trajectory::{LitSpeed, PlanRequest};
 use tracelight_units::{AngularAcceleration, Length, Speed};
 
-use crate::cli::placing::positive_length;
-use crate::cli::shapes::profile;
 use crate::named;
+use tracelight_flags::positive_length;
+use tracelight_flags::profile;
 
 /// With what and how a drawing is run.
 #[derive(Args, Clone, Debug)]

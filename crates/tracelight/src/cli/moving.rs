@@ -19,8 +19,8 @@ use tracelight_units::{Length, Offset, TIMES, parse};
 
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::stand_by;
-use crate::cli::placing::positive_length;
 use crate::named;
+use tracelight_flags::positive_length;
 
 /// The head at a port, and where it stands.
 #[derive(Args, Clone, Debug)]

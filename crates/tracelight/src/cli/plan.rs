@@ -15,13 +15,13 @@ use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::{DrivingArgs, stand_by};
 use crate::cli::ending::ends_in;
 use crate::cli::gcode::PowerArgs;
-use crate::cli::lettering::LetteringArgs;
-use crate::cli::ordering::SequenceArgs;
-use crate::cli::placing::PlacementArgs;
-use crate::cli::reading::ReadingArgs;
-use crate::cli::tracing::TracingArgs;
-use crate::cli::wall::WallArgs;
 use crate::named;
+use tracelight_flags::LetteringArgs;
+use tracelight_flags::PlacementArgs;
+use tracelight_flags::ReadingArgs;
+use tracelight_flags::SequenceArgs;
+use tracelight_flags::TracingArgs;
+use tracelight_flags::WallArgs;
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]

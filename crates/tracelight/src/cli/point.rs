@@ -8,12 +8,12 @@ use tracelight_task::{Failure, Task};
 use tracelight_units::{Offset, Speed};
 
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::by_hand::{each, factor};
 use crate::cli::driving::{DrivingArgs, positive_speed};
-use crate::cli::laws::LawArgs;
 use crate::cli::request::TraceArgs;
 use crate::cli::trace;
-use crate::cli::wall::FromArgs;
+use tracelight_flags::FromArgs;
+use tracelight_flags::LawArgs;
+use tracelight_flags::{each, factor};
 
 /// Mark places on the target one after the other, each until Space, Enter, → or a pedal asks for the next
 #[derive(Args, Debug)]

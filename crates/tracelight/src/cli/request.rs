@@ -10,16 +10,16 @@ use tracelight_task::Failure;
 use tracelight_units::{Offset, Speed};
 
 use crate::cli::answer::Voice;
-use crate::cli::by_hand::ByHandArgs;
 use crate::cli::driving::{DrivingArgs, positive_speed};
 use crate::cli::eyes::{EyeArgs, FollowArgs, SimulatedEyeName};
-use crate::cli::laws::LawArgs;
-use crate::cli::lettering::LetteringArgs;
-use crate::cli::ordering::SequenceArgs;
-use crate::cli::placing::PlacementArgs;
-use crate::cli::reading::ReadingArgs;
-use crate::cli::tracing::TracingArgs;
-use crate::cli::wall::WallArgs;
+use tracelight_flags::ByHandArgs;
+use tracelight_flags::LawArgs;
+use tracelight_flags::LetteringArgs;
+use tracelight_flags::PlacementArgs;
+use tracelight_flags::ReadingArgs;
+use tracelight_flags::SequenceArgs;
+use tracelight_flags::TracingArgs;
+use tracelight_flags::WallArgs;
 
 /// Draw a picture on the target: find its strokes, plan them, run them, show how exact it was
 #[derive(Args, Debug)]

@@ -6,10 +6,10 @@ use tracelight_results::{Before, Kept, NOTHING_LEFT, check_newest, read};
 use tracelight_task::{Failure, Task};
 
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::by_hand::ByHandArgs;
 use crate::cli::request::TraceArgs;
 use crate::cli::trace;
 use crate::job::{self, Earlier};
+use tracelight_flags::ByHandArgs;
 
 /// Go on with a run that ended on its way: killed, stopped, after a fault or a power cut
 ///

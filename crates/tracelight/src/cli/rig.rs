@@ -10,8 +10,8 @@ use tracelight_sim::SimulatedRig;
 use tracelight_task::{Failure, Stop};
 
 use crate::cli::answer::{Answer, Voice, watched};
-use crate::cli::by_hand::each;
 use crate::named;
+use tracelight_flags::each;
 
 /// Emulate a board for programs that speak the wire's language
 #[derive(Args, Debug)]

@@ -18,12 +18,12 @@ use tracelight_vision::Stages;
 
 use crate::cli::answer::{Answer, Voice, print_piece};
 use crate::cli::gcode::GcodeArgs;
-use crate::cli::lettering::LetteringArgs;
-use crate::cli::placing::PlacementArgs;
-use crate::cli::reading::ReadingArgs;
-use crate::cli::tracing::TracingArgs;
-use crate::cli::wall::WallArgs;
 use crate::named;
+use tracelight_flags::LetteringArgs;
+use tracelight_flags::PlacementArgs;
+use tracelight_flags::ReadingArgs;
+use tracelight_flags::TracingArgs;
+use tracelight_flags::WallArgs;
 
 /// Find the strokes of pictures, without a rig
 #[derive(Args, Debug)]

@@ -11,8 +11,8 @@ use tracelight_studio::{Performed, Program, open};
 use tracelight_task::{Failure, Progress, Stop, Task};
 
 use crate::cli::answer::{Answer, PerformsWith, Voice};
-use crate::cli::by_hand::each;
 use crate::cli::trace;
+use tracelight_flags::each;
 
 /// Open the studio: a page in the browser where a picture is placed on the wall, planned and traced on the simulated rig
 ///

@@ -11,8 +11,8 @@ use tracelight_units::Offset;
 
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::ending::toml;
-use crate::cli::placing::positive_length;
 use crate::named;
+use tracelight_flags::positive_length;
 
 /// Where the head stands, from the joint angles at which its dot is on the corners of a rectangle; without a camera
 #[derive(Args, Debug)]

@@ -18,8 +18,8 @@ use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::DrivingArgs;
 use crate::cli::ending::toml;
 use crate::cli::eyes::EyeArgs;
-use crate::cli::placing::PlacementArgs;
 use crate::named;
+use tracelight_flags::PlacementArgs;
 
 /// Position and direction of the head, from dots that it draws and a camera sees
 #[derive(Args, Debug)]

@@ -23,8 +23,8 @@ use tracelight_units::Length;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::ending::toml;
 use crate::cli::eyes::{ImageSize, SimulatedEyeName};
-use crate::cli::placing::positive_length;
 use crate::named;
+use tracelight_flags::positive_length;
 
 /// Camera in front of the wall, from an image of printed markers on it: lens, pose and scale
 #[derive(Args, Debug)]

@@ -4,8 +4,8 @@ use tracelight_task::Failure;
 use tracelight_units::{Length, Offset};
 
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::placing::positive_length;
 use crate::named;
+use tracelight_flags::positive_length;
 
 /// Scale of a camera, from two pictures of a ruler with two marks: one upright, one level
 #[derive(Args, Debug)]

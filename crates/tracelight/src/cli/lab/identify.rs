@@ -12,8 +12,8 @@ use super::rig::RigArgs;
 use super::rig_out;
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::laws::LawArgs;
 use crate::named;
+use tracelight_flags::LawArgs;
 
 /// Identify the head's parameters: inertia, friction, weight, amplifier, positions of its encoders' edges
 #[derive(Args, Debug)]

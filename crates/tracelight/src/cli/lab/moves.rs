@@ -17,8 +17,8 @@ use super::bounds::within;
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::rig::RigArgs;
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::placing::positive_length;
-use crate::cli::shapes::{profile, ramps};
+use tracelight_flags::positive_length;
+use tracelight_flags::{profile, ramps};
 
 /// Follow a line or an arc on the target from rest to rest: each profile as requested, and as limited by the motors
 #[derive(Args, Debug)]

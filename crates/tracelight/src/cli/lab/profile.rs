@@ -10,7 +10,7 @@ use tracelight_units::{
 use super::bounds::within;
 use super::command::{self, LabCommand, OutFile, out_file};
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::shapes::{profile, ramps};
+use tracelight_flags::{profile, ramps};
 
 /// Move one joint from rest to rest, motors left out: durations and peaks of every profile, and plots
 #[derive(Args, Debug)]

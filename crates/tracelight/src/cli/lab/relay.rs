@@ -12,8 +12,8 @@ use super::rig::RigArgs;
 use super::rig_out;
 use super::step::{Axis, step};
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::laws::observer;
 use crate::named;
+use tracelight_flags::observer;
 
 /// Let a relay swing a joint, and tune a PID from how it swings: no model needed
 #[derive(Args, Debug)]

@@ -5,8 +5,8 @@ use tracelight_task::Failure;
 
 use super::rig::SetArgs;
 use crate::cli::driving::DrivingArgs;
-use crate::cli::laws::LawArgs;
 use crate::named;
+use tracelight_flags::LawArgs;
 
 /// What is drawn on the bench, and how.
 #[derive(Args, Clone, Debug)]

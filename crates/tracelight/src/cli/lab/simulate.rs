@@ -11,7 +11,7 @@ use super::command::{self, LabCommand, OutFile, log, out_file};
 use super::rig::RigArgs;
 use super::shape::switch;
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::laws::{law, observer};
+use tracelight_flags::{law, observer};
 
 /// Run an array of times and angles through the nonlinear loop: desired, actual and error, as the 2006 report's simulation
 #[derive(Args, Debug)]

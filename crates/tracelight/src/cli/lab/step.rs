@@ -9,7 +9,7 @@ use super::by_hand::ByHandArgs;
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::rig::RigArgs;
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::laws::{law, observer};
+use tracelight_flags::{law, observer};
 
 /// Send one joint from rest at zero to an angle: overshoot, settling time and steady-state error, on the nonlinear head and linearized
 #[derive(Args, Debug)]

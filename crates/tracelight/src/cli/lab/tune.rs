@@ -11,7 +11,7 @@ use super::command::{self, LabCommand};
 use super::rig_out;
 use super::shape::ShapeArgs;
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::laws::law;
+use tracelight_flags::law;
 
 /// Choose a rig's control law and bandwidth: the smallest error over varied heads among those that meet the robustness requirement
 #[derive(Args, Debug)]

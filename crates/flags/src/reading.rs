@@ -14,7 +14,7 @@ use crate::fonts::SystemFonts;
 
 /// How an SVG or DXF is read. Pixels have none of this.
 #[derive(Args, Clone, Debug)]
-pub(crate) struct ReadingArgs {
+pub struct ReadingArgs {
     /// Lines covered by other shapes of the drawing: cut (not drawn) or keep (drawn, as for a cutting template)
     #[arg(long, value_enum, default_value_t)]
     hidden: HiddenName,
@@ -109,7 +109,7 @@ impl ReadingArgs {
     ///
     /// # Errors
     /// Two of them.
-    pub(crate) fn axis_unit(&self) -> Result<Option<AxisUnit>, Failure> {
+    pub fn axis_unit(&self) -> Result<Option<AxisUnit>, Failure> {
         only(self.unit.iter().filter_map(|unit| unit.angle()))
     }
 
@@ -117,7 +117,7 @@ impl ReadingArgs {
     ///
     /// # Errors
     /// A font file that cannot be read; two units.
-    pub(crate) fn options(&self) -> Result<ReadOptions, Failure> {
+    pub fn options(&self) -> Result<ReadOptions, Failure> {
         let system = self.system_fonts.then(|| Arc::new(SystemFonts::look()));
         let fonts = self.font.iter().map(|name| font(name, system.as_deref()));
         Ok(ReadOptions {

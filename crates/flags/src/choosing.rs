@@ -4,13 +4,13 @@ use tracelight_stroke::Colour;
 
 /// Which strokes of a drawing are taken.
 #[derive(Args, Clone, Debug, Default)]
-pub(crate) struct ChoiceArgs {
+pub struct ChoiceArgs {
     /// Only strokes on this layer of an SVG, DXF or JSON drawing; give it again for more layers
     #[arg(long, value_name = "NAME")]
-    pub(crate) layer: Vec<String>,
+    pub layer: Vec<String>,
     /// Only strokes of this colour, such as #ff0000 or red; give it again for more colours
     #[arg(long, visible_alias = "color", value_name = "#RRGGBB|NAME", value_parser = colour)]
-    pub(crate) colour: Vec<Colour>,
+    pub colour: Vec<Colour>,
 }
 
 fn colour(text: &str) -> Result<Colour, String> {
@@ -20,7 +20,7 @@ fn colour(text: &str) -> Result<Colour, String> {
 
 impl ChoiceArgs {
     /// What they mean.
-    pub(crate) fn choice(&self) -> Choice {
+    pub fn choice(&self) -> Choice {
         Choice { layers: self.layer.clone(), colours: self.colour.clone(), ..Choice::default() }
     }
 }

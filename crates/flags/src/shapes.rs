@@ -3,14 +3,14 @@ use tracelight_experiment::profile_name::ProfileName;
 use tracelight_trajectory::Ramps;
 
 /// Names of profiles on the command line.
-pub(crate) fn profile() -> impl TypedValueParser<Value = ProfileName> {
+pub fn profile() -> impl TypedValueParser<Value = ProfileName> {
     let known = ProfileName::ALL.map(|profile| PossibleValue::new(profile.name()).help(profile.about()));
     PossibleValuesParser::new(known).map(|name| ProfileName::named(&name).unwrap_or(ProfileName::SCurve))
 }
 
 /// `pa1,pa2,pb1,pb2`: shares of the acceleration phase over which the acceleration builds up and fades, and the same of
 /// the deceleration phase.
-pub(crate) fn ramps(text: &str) -> Result<Ramps, String> {
+pub fn ramps(text: &str) -> Result<Ramps, String> {
     let wrong = |why: &str| {
         format!(
             "{text} {why}; give four shares with commas between, such as 0.2,0.2,0.15,0.15: how long the acceleration \

@@ -3,15 +3,15 @@ use tracelight_pipeline::Sequence;
 
 /// In which order the strokes are drawn.
 #[derive(Args, Clone, Debug)]
-pub(crate) struct SequenceArgs {
+pub struct SequenceArgs {
     /// Order of the strokes: time (fastest), layer (one layer after the other), reading (row by row from the top left)
     #[arg(long, value_enum, default_value_t)]
-    pub(crate) order: SequenceName,
+    pub order: SequenceName,
 }
 
 /// Orders of strokes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum SequenceName {
+pub enum SequenceName {
     /// Least travel time between strokes
     #[default]
     Time,
@@ -23,7 +23,7 @@ pub(crate) enum SequenceName {
 
 impl SequenceName {
     /// As `--order` takes it.
-    pub(crate) const fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Time => "time",
             Self::Layer => "layer",
@@ -34,7 +34,7 @@ impl SequenceName {
 
 impl SequenceArgs {
     /// What they mean.
-    pub(crate) const fn sequence(&self) -> Sequence {
+    pub const fn sequence(&self) -> Sequence {
         match self.order {
             SequenceName::Time => Sequence::Free,
             SequenceName::Layer => Sequence::Layers,

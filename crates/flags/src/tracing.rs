@@ -11,47 +11,47 @@ use tracelight_vision::{Mode, Options};
 
 /// How pixels become strokes. Without a flag, what the picture itself says.
 #[derive(Args, Clone, Debug)]
-pub(crate) struct TracingArgs {
+pub struct TracingArgs {
     /// How pixels become strokes
     #[arg(long, value_enum, default_value_t)]
-    pub(crate) mode: ModeName,
+    pub mode: ModeName,
     /// Smallest contrast of ink, as a percentage of the paper's brightness, such as 30. On dark paper: as a percentage of the difference
     /// between paper and white
     #[arg(long, value_name = "auto|PERCENT", default_value = "auto", allow_hyphen_values = true, value_parser = threshold)]
-    pub(crate) threshold: OrAuto,
+    pub threshold: OrAuto,
     /// Smallest patch of ink that is kept, in square pixels, such as 20. With 0 everything is kept; repeated pencil lines are not merged
     #[arg(long, value_name = "auto|AREA", default_value = "auto", allow_hyphen_values = true, value_parser = despeckle)]
-    pub(crate) despeckle: OrAuto,
+    pub despeckle: OrAuto,
     /// Drop strokes shorter than this, in the picture (8px) or on the target (5mm, 0.2in)
     #[arg(long, value_name = "LENGTH", default_value = "0px", allow_hyphen_values = true, value_parser = least_length)]
-    pub(crate) min_length: LeastLength,
+    pub min_length: LeastLength,
     /// Furthest a stroke may be from the ink's middle or edge
     #[arg(long, value_name = "LENGTH", default_value = "0.35px", allow_hyphen_values = true, value_parser = tolerance)]
-    pub(crate) tolerance: Pixels,
+    pub tolerance: Pixels,
     /// Corner angle: bends of at least this angle stay sharp corners
     #[arg(long, value_name = "ANGLE", default_value = "25deg", allow_hyphen_values = true, value_parser = corner_angle)]
-    pub(crate) corner_angle: Angle,
+    pub corner_angle: Angle,
     /// Do not trace the edges of sheets of paper in the picture, as in a photograph of a wall or a table
     #[arg(long)]
-    pub(crate) sheets: bool,
+    pub sheets: bool,
     /// Trace the whole picture, also outside a detected sheet of paper
     #[arg(long)]
-    pub(crate) whole: bool,
+    pub whole: bool,
     /// Correct the perspective of a sheet photographed at an angle: auto finds its corners; off leaves the picture as it is; or four
     /// corners in pixels from the picture's upper left, such as "52,19 583,6 599,368 100,447"
     #[arg(long, value_name = "auto|off|X,Y …", default_value = "auto", allow_hyphen_values = true, value_parser = straighten)]
-    pub(crate) straighten: Straighten,
+    pub straighten: Straighten,
     /// Size of the sheet; the drawing keeps its true size on it unless --width or --height is given
     #[arg(long, value_enum, value_name = "SIZE")]
-    pub(crate) paper: Option<PaperName>,
+    pub paper: Option<PaperName>,
     /// Trace also a photograph or a screenshot that looks like no drawing
     #[arg(long)]
-    pub(crate) force: bool,
+    pub force: bool,
 }
 
 /// How pixels become strokes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ModeName {
+pub enum ModeName {
     /// Each part by its width: pen lines as centrelines, shapes as outlines
     #[default]
     Auto,
@@ -76,7 +76,7 @@ impl From<ModeName> for Mode {
 
 /// Sizes of paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PaperName {
+pub enum PaperName {
     /// 148 × 210 mm
     A5,
     /// 210 × 297 mm
@@ -103,15 +103,15 @@ impl PaperName {
 
 /// A number, or what the picture itself says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct OrAuto(pub(crate) Option<f64>);
+pub struct OrAuto(pub Option<f64>);
 
 /// Pixels of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Pixels(pub(crate) f64);
+pub struct Pixels(pub f64);
 
 impl TracingArgs {
     /// What they mean.
-    pub(crate) fn tracing(&self) -> Tracing {
+    pub fn tracing(&self) -> Tracing {
         Tracing {
             mode: self.mode.into(),
             tolerance_px: self.tolerance.0,
@@ -128,7 +128,7 @@ impl TracingArgs {
     }
 
     /// What was set by hand, flag and value.
-    pub(crate) fn settings(&self) -> Vec<(&'static str, String)> {
+    pub fn settings(&self) -> Vec<(&'static str, String)> {
         let least = match self.min_length {
             LeastLength::Pixels(px) => format!("{px} px"),
             LeastLength::Metres(m) => format!("{:.1} mm", m * 1e3),

@@ -7,27 +7,27 @@ use tracelight_units::{TIMES, parse};
 
 /// Whoever stands at the wall while the job runs.
 #[derive(Args, Clone, Debug, Default)]
-pub(crate) struct ByHandArgs {
+pub struct ByHandArgs {
     /// Run the simulated rig in real time, or FACTOR times as fast, from 0.25 to 8. In a terminal keys pause, stop and change the speed; ? lists
     /// them
     #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1", value_parser = factor,
           allow_hyphen_values = true)]
-    pub(crate) real_time: Option<f64>,
+    pub real_time: Option<f64>,
     /// First show where the drawing will be: by the box round it, its hull, or the box's corners, again and again until Space or Enter; in real time
     #[arg(long, value_enum, value_name = "box|hull|corners")]
-    pub(crate) frame: Option<FrameName>,
+    pub frame: Option<FrameName>,
     /// With --step and --points: go on to the next by itself after this long on one, such as 5s, without a key; without --real-time as fast as the
     /// simulation runs
     #[arg(long, value_name = "TIME", value_parser = each, allow_hyphen_values = true)]
-    pub(crate) each: Option<f64>,
+    pub each: Option<f64>,
     /// Print one JSON object per line while the job runs: states, strokes, faults, progress
     #[arg(long, conflicts_with = "json")]
-    pub(crate) events: bool,
+    pub events: bool,
 }
 
 impl ByHandArgs {
     /// How somebody attends a job that goes stroke by stroke or not, of a rig that may keep time by itself.
-    pub(crate) fn attending(&self, steps: bool, keeps_time: bool) -> Attending {
+    pub fn attending(&self, steps: bool, keeps_time: bool) -> Attending {
         let waits = steps && self.each.is_none() || self.frame.is_some();
         Attending {
             real_time: self.real_time.or(waits.then_some(1.0)),
@@ -43,7 +43,7 @@ impl ByHandArgs {
 
 /// Frames of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FrameName {
+pub enum FrameName {
     /// The upright rectangle that just holds it
     Box,
     /// The shortest line round it
@@ -54,7 +54,7 @@ pub(crate) enum FrameName {
 
 impl FrameName {
     /// What it means.
-    pub(crate) const fn frame(self) -> Frame {
+    pub const fn frame(self) -> Frame {
         match self {
             Self::Box => Frame::Box,
             Self::Hull => Frame::Hull,
@@ -64,7 +64,7 @@ impl FrameName {
 }
 
 /// A time on one stroke or point, s.
-pub(crate) fn each(text: &str) -> Result<f64, String> {
+pub fn each(text: &str) -> Result<f64, String> {
     const RANGE: std::ops::RangeInclusive<f64> = 0.1..=300.0;
     let time_s = parse(text, TIMES).map_err(|e| e.to_string())?;
     let is_one = RANGE.contains(&time_s);
@@ -73,7 +73,11 @@ pub(crate) fn each(text: &str) -> Result<f64, String> {
         .ok_or_else(|| format!("{text} is not between {} s and {} s", RANGE.start(), RANGE.end()))
 }
 
-pub(crate) fn factor(text: &str) -> Result<f64, String> {
+/// How many times as fast as real time, from 0.25 to 8.
+///
+/// # Errors
+/// What is none, in words.
+pub fn factor(text: &str) -> Result<f64, String> {
     const RANGE: std::ops::RangeInclusive<f64> = 0.25..=8.0;
     let factor = text.parse().map_err(|_| format!("{text} is not a number; give one such as 2"))?;
     if RANGE.contains(&factor) {

@@ -11,27 +11,28 @@ use tracelight_units::Offset;
 
 /// Where on a wall a drawing goes, and where it must not.
 #[derive(Args, Clone, Debug, Default)]
-pub(crate) struct WallArgs {
+pub struct WallArgs {
     /// A mark of the drawing, and where it belongs on the wall: "X,Y=U,V", such as "0mm,0mm=1.2m,0.4m"; give it again for more marks. X,Y: of a DXF or
     /// CSV its own coordinates; of an SVG and a picture from the top left, such as "120px,340px". U,V: right and up of the target's middle, or from the
     /// edges that --from names; or the joint angles pan,tilt at which the head's dot is on the mark, such as "12deg,-3deg". One mark sets the place, two
     /// also turn and size (with --width they check it), three skew, four keystone; more are averaged
     #[arg(long, value_name = "X,Y=U,V", allow_hyphen_values = true, value_parser = marks)]
-    pub(crate) align: Vec<Marks>,
+    pub align: Vec<Marks>,
     #[command(flatten)]
-    pub(crate) from: FromArgs,
+    #[allow(missing_docs, reason = "a comment here would be the group's help")]
+    pub from: FromArgs,
     /// What --width, --height and --offset are those of: the page with its margins, or the drawing on it
     #[arg(long, value_enum, default_value_t)]
-    pub(crate) fit: FitName,
+    pub fit: FitName,
     /// Never lit: the closed paths on a layer of the drawing, which are not drawn; or an area of the wall by its corner and size, such as 10cm,20cm,8cm,8cm.
     /// Strokes are cut there, and dark moves may pass. Give it again for more
     #[arg(long, value_name = "LAYER|X,Y,W,H", allow_hyphen_values = true, value_parser = typed_no_go)]
-    pub(crate) no_go: Vec<NoGo>,
+    pub no_go: Vec<NoGo>,
 }
 
 /// From where places on a wall are measured.
 #[derive(Args, Clone, Copy, Debug, Default)]
-pub(crate) struct FromArgs {
+pub struct FromArgs {
     /// What places on the wall (--offset, U,V of --align, --no-go, X,Y of `point`) are measured from: an edge corner of the wall, inwards, so that bottom-left measures from the left edge and
     /// from the floor. --offset then goes to the same corner of the drawing
     #[arg(long, value_enum, value_name = "CORNER")]
@@ -44,7 +45,7 @@ pub(crate) struct FromArgs {
 
 /// A corner of a wall, or its middle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum CornerName {
+pub enum CornerName {
     /// Floor and left edge
     BottomLeft,
     /// Floor and right edge
@@ -72,7 +73,7 @@ impl CornerName {
 
 /// What sizes and corners are those of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FitName {
+pub enum FitName {
     /// What is drawn, without the empty margins
     Drawing,
     /// All of the picture or page
@@ -82,11 +83,11 @@ pub(crate) enum FitName {
 
 /// Marks of one flag.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Marks(Vec<TypedMark>);
+pub struct Marks(Vec<TypedMark>);
 
 impl WallArgs {
     /// Whether any of it is asked for.
-    pub(crate) const fn is_given(&self) -> bool {
+    pub const fn is_given(&self) -> bool {
         !self.align.is_empty()
             || self.from.from.is_some()
             || !self.no_go.is_empty()
@@ -94,7 +95,7 @@ impl WallArgs {
     }
 
     /// Adds what they mean to where a drawing goes otherwise; `area_m` is what is known of the wall: its width and height about the target's middle.
-    pub(crate) fn placing(
+    pub fn placing(
         &self,
         placing: Placing,
         driving: Option<&Driving>,
@@ -122,7 +123,7 @@ impl WallArgs {
     }
 
     /// What was set, flag and value; nothing where nothing was.
-    pub(crate) fn settings(&self) -> Vec<(&'static str, String)> {
+    pub fn settings(&self) -> Vec<(&'static str, String)> {
         let mut rows = Vec::new();
         let marks = self.align.iter().flat_map(|marks| &marks.0).map(|mark| mark.text.as_str());
         let marks = marks.collect::<Vec<_>>().join(" ");

@@ -6,24 +6,24 @@ use tracelight_task::Failure;
 
 /// By what the head is held to its plan.
 #[derive(Args, Clone, Copy, Debug)]
-pub(crate) struct LawArgs {
+pub struct LawArgs {
     /// Control law [default: the rig's]
     #[arg(long, value_name = "LAW", value_parser = law())]
-    pub(crate) law: Option<LawName>,
+    pub law: Option<LawName>,
     /// How counts become position and speed [default: the observer the law was designed with]
     #[arg(long, value_name = "OBSERVER", value_parser = observer())]
-    pub(crate) observer: Option<ObserverName>,
+    pub observer: Option<ObserverName>,
 }
 
 impl LawArgs {
     /// Sets what was asked for.
-    pub(crate) fn apply(self, rig: &mut RigConfig) -> Result<(), Failure> {
+    pub fn apply(self, rig: &mut RigConfig) -> Result<(), Failure> {
         set_law(rig, self.law, self.observer)
     }
 }
 
 /// Names of laws on the command line.
-pub(crate) fn law() -> impl TypedValueParser<Value = LawName> {
+pub fn law() -> impl TypedValueParser<Value = LawName> {
     PossibleValuesParser::new(LawName::ALL.map(|law| PossibleValue::new(law.name()).help(about(law))))
         .map(|name| LawName::named(&name).unwrap_or(LawName::State))
 }
@@ -45,7 +45,7 @@ const fn about(law: LawName) -> &'static str {
 }
 
 /// Names of observers on the command line.
-pub(crate) fn observer() -> impl TypedValueParser<Value = ObserverName> {
+pub fn observer() -> impl TypedValueParser<Value = ObserverName> {
     PossibleValuesParser::new(ObserverName::ALL.map(ObserverName::name))
         .map(|name| ObserverName::named(&name).unwrap_or(ObserverName::Kalman))
 }

@@ -7,11 +7,11 @@ use tracelight_picture::Source;
 use tracelight_task::Failure;
 use tracelight_units::Length;
 
-use crate::cli::placing::positive_length;
+use crate::placing::positive_length;
 
 /// Words in place of a picture.
 #[derive(Args, Clone, Debug)]
-pub(crate) struct LetteringArgs {
+pub struct LetteringArgs {
     /// Draw these words in place of a picture, as outlines unless --letters line; \n begins a new line
     #[arg(long, value_name = "WORDS", allow_hyphen_values = true, value_parser = words)]
     text: Option<Words>,
@@ -45,7 +45,7 @@ enum TextAlignName {
 
 impl LetteringArgs {
     /// What the results are called, if there are words.
-    pub(crate) fn name(&self) -> Option<&str> {
+    pub fn name(&self) -> Option<&str> {
         self.text.as_ref().map(|text| text.name.as_str())
     }
 
@@ -53,7 +53,7 @@ impl LetteringArgs {
     ///
     /// # Errors
     /// Words without a letter, and a font that is none.
-    pub(crate) fn source(&self, options: &ReadOptions) -> Result<Option<Source>, Failure> {
+    pub fn source(&self, options: &ReadOptions) -> Result<Option<Source>, Failure> {
         let Some(text) = &self.text else { return Ok(None) };
         let align = match self.text_align {
             TextAlignName::Left => Align::Left,
