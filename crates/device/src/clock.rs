@@ -23,7 +23,7 @@ pub struct Clock {
 impl Clock {
     /// Takes an answer: sent and come by the host's clock, µs, and when the board had it: in which tick, and how far in it, µs. One that was sent later than it came, or
     /// long ago, is none.
-    pub(crate) fn hear(&mut self, (sent_us, came_us): (u64, u64), tick: u32, tick_us: u16) {
+    pub fn hear(&mut self, (sent_us, came_us): (u64, u64), tick: u32, tick_us: u16) {
         const LONGEST_US: u64 = 10_000_000;
         if sent_us > came_us || came_us - sent_us > LONGEST_US {
             return;

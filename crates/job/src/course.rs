@@ -137,7 +137,7 @@ pub(crate) fn gone() -> Failure {
 
 /// A rig that does not go on, though nobody here stopped it.
 fn disarmed() -> Failure {
-    let message = "the rig was disarmed, and not from here: the connection to its board was interrupted. It is dark until somebody arms it; \
+    let message = "the rig was disarmed, and not from here: by `tracelight stop` of another program, or the connection to its board was interrupted. It is dark until somebody arms it; \
                    `tracelight resume` with the folder of this run draws what is left";
     Failure::failed("disarmed", message)
 }

@@ -10,7 +10,9 @@ use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::port::Port;
+use crate::seen::Seen;
 use crate::session::{micros, new_session};
+use crate::shared::Shared;
 
 /// For how long it waits for bytes before it looks what else is to be done.
 const WAIT: Duration = Duration::from_millis(1);
@@ -30,6 +32,8 @@ pub struct Device {
     broke: Option<Instant>,
     /// Whoever waits for a cable need not.
     stop: Stop,
+    /// Those who watch it, and may disarm it; none where no socket could be made.
+    shared: Option<Shared>,
 }
 
 impl Device {
@@ -47,7 +51,10 @@ impl Device {
         let port = Some(Port::open(path)?);
         let host = Host::new(config.control_config(), new_session());
         let (began, stop) = (Instant::now(), stop.clone());
-        let mut device = Self { host, port, path: path.to_owned(), began, broke: None, stop };
+        // whoever drives through another program's port is seen there
+        let is_own = port.as_ref().is_some_and(Port::is_own);
+        let shared = is_own.then(|| Shared::new(path, false).ok()).flatten();
+        let mut device = Self { host, port, path: path.to_owned(), began, broke: None, stop, shared };
         // until it is known how it begins
         while device.host.twin().is_none_or(|twin| twin.state().is_none()) {
             device.stop.check()?;
@@ -69,6 +76,8 @@ impl Device {
         // the first tick shows how it stands
         while self.next().is_some() {
             task.check()?;
+            // whoever waits is there: of a port that is shared it stays his
+            let _ = self.host.send(Command::KeepAlive);
             let left_s = f64::from(self.host.opens_in_ticks()) * TICK_F64_S;
             if left_s <= 0.0 {
                 return Ok(());
@@ -98,6 +107,11 @@ impl Device {
         &self.host
     }
 
+    /// What the board has remarked for people since it was last asked.
+    pub fn remarks(&mut self) -> Vec<String> {
+        std::iter::from_fn(|| self.host.remark()).collect()
+    }
+
     /// Why no tick comes any more, if none does.
     #[must_use]
     pub fn failure(&self) -> Option<Failure> {
@@ -114,6 +128,10 @@ impl Device {
 
     /// Says what is to be said, and hears what comes.
     fn pump(&mut self) {
+        if self.shared.as_mut().is_some_and(|shared| shared.hear().disarm) {
+            // taken at any time, and said until it is confirmed
+            let _ = self.host.send(Command::Disarm);
+        }
         let Some(port) = &mut self.port else { return self.look_again() };
         let mut bytes = Vec::new();
         self.host.give(micros(self.began), &mut bytes);
@@ -145,6 +163,7 @@ impl Rig for Device {
     fn next(&mut self) -> Option<Telemetry> {
         loop {
             if let Some(told) = self.host.telemetry() {
+                self.shared.iter_mut().for_each(|shared| shared.tell(&Seen::of(&told)));
                 return Some(told);
             }
             if self.failure().is_some() || self.port.is_none() && self.stop.is_wanted() {

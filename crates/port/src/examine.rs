@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use tracelight_device::Clock;
 use tracelight_rig::wire::{FromBoard, Greeting, MOST_PACKET, Packets, ToBoard, VERSION, connection_of};
 use tracelight_task::{Failure, Stop};
 
@@ -25,18 +26,19 @@ pub fn examine(path: &Path, stop: &Stop) -> Result<Examined, Failure> {
     let port = Port::open(path)?;
     let mut line = Line { port, packets: Packets::new(), session: new_session(), began: Instant::now() };
     let board = line.greet(stop)?;
-    let (mut round_trips_ms, mut unanswered) = (Vec::new(), 0);
+    let (mut round_trips_ms, mut unanswered, mut clock) = (Vec::new(), 0, Clock::default());
     // one of another version says nothing more
     let answers = if board.version.0 == VERSION.0 { ANSWERS } else { 0 };
     for _ in 0..answers {
         stop.check()?;
-        match line.round_trip()? {
+        match line.round_trip(&mut clock)? {
             Some(took) => round_trips_ms.push(took.as_secs_f64() * 1e3),
             None => unanswered += 1,
         }
         std::thread::sleep(APART);
     }
-    Ok(Examined { port: path.display().to_string(), board, round_trips_ms, unanswered })
+    let ticks_known_ms = clock.instant_of(board.tick).map(|(_, unsure_us)| 1e-3 * unsure_us);
+    Ok(Examined { port: path.display().to_string(), board, round_trips_ms, unanswered, ticks_known_ms })
 }
 
 struct Line {
@@ -98,13 +100,19 @@ impl Line {
         Err(Failure::failed("board", message))
     }
 
-    fn round_trip(&mut self) -> Result<Option<Duration>, Failure> {
+    fn round_trip(&mut self, clock: &mut Clock) -> Result<Option<Duration>, Failure> {
         let host_us = micros(self.began);
         let asked = Instant::now();
         self.say(&ToBoard::KeepAlive { host_us })?;
-        let is_its = |said: FromBoard<'_>| {
-            matches!(said, FromBoard::Pong { host_us: us, .. } if us == host_us).then_some(())
+        let is_its = |said: FromBoard<'_>| match said {
+            FromBoard::Pong { host_us: us, tick, tick_us } if us == host_us => Some((tick, tick_us)),
+            _ => None,
         };
-        Ok(self.hear(PATIENCE, is_its)?.map(|()| asked.elapsed()))
+        let heard = self.hear(PATIENCE, is_its)?;
+        let took = asked.elapsed();
+        Ok(heard.map(|(tick, tick_us)| {
+            clock.hear((host_us, micros(self.began)), tick, tick_us);
+            took
+        }))
     }
 }

@@ -15,6 +15,8 @@ pub struct Examined {
     pub round_trips_ms: Vec<f64>,
     /// Answers that did not come.
     pub unanswered: usize,
+    /// How well it is known when its ticks are, by the clock of this computer, ms; `None` without an answer.
+    pub ticks_known_ms: Option<f64>,
 }
 
 /// Kinds of boards, by their numbers.
@@ -77,13 +79,16 @@ fn hex(bytes: &[u8]) -> String {
 /// What was seen, for people.
 #[must_use]
 pub fn examined_text(seen: &Examined) -> String {
-    let Examined { port, board, round_trips_ms, unanswered } = seen;
+    let Examined { port, board, round_trips_ms, unanswered, ticks_known_ms } = seen;
     let [major, minor, patch] = board.firmware;
     let has = having(&board.capabilities);
     let has = if has.is_empty() { "nothing beside its joints and a gate".to_owned() } else { has.join(", ") };
     let configured = board.configuration.map_or("none".to_owned(), |crc| format!("{crc:08x}"));
+    let known = ticks_known_ms.map_or_else(String::new, |ms| format!("; its ticks are known to {ms:.2} ms"));
     let link = match (quantile(round_trips_ms, 0.5), quantile(round_trips_ms, 0.99)) {
-        (Some(middle), Some(most)) => format!("there and back in {middle:.2} ms, 99 % within {most:.2} ms"),
+        (Some(middle), Some(most)) => {
+            format!("there and back in {middle:.2} ms, 99 % within {most:.2} ms{known}")
+        }
         _ => "no answer to any keep-alive".to_owned(),
     };
     let lost = if *unanswered > 0 { format!("; {unanswered} not answered") } else { String::new() };
@@ -108,7 +113,7 @@ pub fn examined_text(seen: &Examined) -> String {
 /// What was seen, for scripts.
 #[must_use]
 pub fn examined_json(seen: &Examined) -> Value {
-    let Examined { port, board, round_trips_ms, unanswered } = seen;
+    let Examined { port, board, round_trips_ms, unanswered, ticks_known_ms } = seen;
     let [major, minor, patch] = board.firmware;
     json!({
         "port": port, "kind": kind(board.board), "program": format!("{major}.{minor}.{patch}"),
@@ -116,6 +121,6 @@ pub fn examined_json(seen: &Examined) -> Value {
         "reset": why(board.reset), "configuration": board.configuration, "segments": board.segments, "rows": board.rows,
         "tick_ns": board.tick_ns, "has": having(&board.capabilities),
         "round_trip_ms": { "median": quantile(round_trips_ms, 0.5), "p99": quantile(round_trips_ms, 0.99) },
-        "unanswered": unanswered,
+        "unanswered": unanswered, "ticks_known_ms": ticks_known_ms,
     })
 }

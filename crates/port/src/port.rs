@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, Read as _, Write as _};
-use std::os::fd::AsFd;
+use std::os::fd::{AsFd, OwnedFd};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -11,6 +11,8 @@ use rustix::fs::{FlockOperation, Mode, OFlags};
 use rustix::io::Errno;
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use tracelight_task::Failure;
+
+use crate::shared::{Owner, socket_of};
 
 /// A line to a board.
 #[derive(Debug)]
@@ -27,11 +29,30 @@ pub(crate) fn raw(terminal: impl AsFd) -> io::Result<()> {
 }
 
 impl Port {
+    /// Opens a port that nobody else has open with this program; one that another program shares is used through that.
+    ///
+    /// # Errors
+    /// `port`: it is not there, no port, may not be opened, or is in use, by whom, and what to do.
+    pub fn open(path: &Path) -> Result<Self, Failure> {
+        match Self::open_alone(path) {
+            Err(refused) => match socket_of(path).ok().and_then(|socket| Owner::of(&socket)) {
+                Some(owner) => {
+                    let stream = owner.drive()?;
+                    let wrong = |e: io::Error| Failure::failed("port", format!("{}: {e}", path.display()));
+                    stream.set_nonblocking(true).map_err(wrong)?;
+                    Ok(Self { file: OwnedFd::from(stream).into(), path: path.to_owned() })
+                }
+                None => Err(refused),
+            },
+            opened => opened,
+        }
+    }
+
     /// Opens a port that nobody else has open with this program.
     ///
     /// # Errors
     /// `port`: it is not there, no port, may not be opened, or is in use, and what to do.
-    pub fn open(path: &Path) -> Result<Self, Failure> {
+    pub fn open_alone(path: &Path) -> Result<Self, Failure> {
         let at = path.display();
         let wrong = |e: io::Error| {
             let what = match e.kind() {
@@ -52,6 +73,12 @@ impl Port {
         rustix::fs::flock(&file, FlockOperation::NonBlockingLockExclusive).map_err(|e| wrong(e.into()))?;
         raw(&file).map_err(wrong)?;
         Ok(Self { file: file.into(), path: path.to_owned() })
+    }
+
+    /// Whether it was opened here, and not through another program that shares it.
+    #[must_use]
+    pub fn is_own(&self) -> bool {
+        tcgetattr(&self.file).is_ok()
     }
 
     /// Where it is.

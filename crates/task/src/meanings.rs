@@ -49,7 +49,7 @@ const MESSAGES: &[(&str, &str)] = &[
     ),
     (
         "disarmed",
-        "A head was disarmed while it drew, and not by this program: the connection to its board was interrupted. Go on with tracelight resume.",
+        "A head was disarmed while it drew, and not by this program: by `tracelight stop` in another terminal, or the connection to its board was interrupted. Go on with tracelight resume.",
     ),
     (
         "not-armed",
@@ -62,6 +62,10 @@ const MESSAGES: &[(&str, &str)] = &[
     (
         "stops",
         "The end stops of a head are not where they should be: it does not stop at the same place twice, not as far apart as its rig file's [homing] says, or within its range. See whether something is in its way; tracelight home --find-stops measures them on a head that is homed.",
+    ),
+    (
+        "not-dark",
+        "A head that another program drives was told to be dark, and its board did not say within a second that it is disarmed. Take its laser's power. The program may hang; its board is dark by itself within 50 ms then, but nobody has seen it.",
     ),
     (
         "no-stop",

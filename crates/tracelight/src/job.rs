@@ -136,10 +136,14 @@ fn ran(
         let ran = prepared.run_by_hand(head, (kept, hands), task)?;
         (prepared, ran)
     };
-    // it knows why it is gone
-    if let Some(why) = device.and_then(|device| device.rig().failure()) {
-        ran.notes.push(why.message.clone());
-        ran.failure = Some(why);
+    if let Some(device) = &mut device {
+        let remarks = device.rig_mut().remarks();
+        ran.notes.extend(remarks.into_iter().map(|remark| format!("the board remarks: {remark}")));
+        // it knows why it is gone
+        if let Some(why) = device.rig().failure() {
+            ran.notes.push(why.message.clone());
+            ran.failure = Some(why);
+        }
     }
     Ok((prepared, ran))
 }

@@ -2,9 +2,9 @@
 
 mod advice;
 pub(crate) mod answer;
-mod calibrate;
+pub(crate) mod calibrate;
 mod candidates;
-mod completions;
+pub(crate) mod completions;
 mod doctor;
 pub(crate) mod driving;
 pub(crate) mod ending;
@@ -13,10 +13,11 @@ pub(crate) mod eyes;
 mod failing;
 pub(crate) mod gcode;
 mod lab;
-mod man;
+pub(crate) mod man;
 mod meant;
 mod moving;
-mod plan;
+mod others;
+pub(crate) mod plan;
 mod point;
 mod recover;
 pub(crate) mod request;
@@ -24,7 +25,7 @@ mod resume;
 mod rig;
 mod rigs;
 mod runs;
-mod strokes;
+pub(crate) mod strokes;
 mod studio;
 mod terminal;
 mod trace;
@@ -67,6 +68,8 @@ enum Command {
     Home(moving::HomeArgs),
     Jog(moving::JogArgs),
     Park(moving::ParkArgs),
+    Stop(others::StopArgs),
+    Watch(others::WatchArgs),
     Studio(studio::StudioArgs),
     Calibrate(calibrate::CalibrateArgs),
     Lab(lab::LabArgs),
@@ -129,6 +132,8 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Home(args) => (args.head.voice, moving::home(args, stop)),
         Command::Jog(args) => (args.head.voice, moving::jog(args, stop)),
         Command::Park(args) => (args.head.voice, moving::park(args, stop)),
+        Command::Stop(args) => (args.voice, others::stop(args)),
+        Command::Watch(args) => (args.voice, others::run_watch(args, stop)),
         Command::Calibrate(args) => (args.voice(), calibrate::run(args, stop)),
         Command::Lab(args) => (args.voice(), lab::run(args, answer_to, stop)),
         Command::Doctor(args) => (args.voice, doctor::run(args, stop)),

@@ -14,7 +14,7 @@ use crate::house_rules::sources;
 use crate::support::{folder, root};
 
 /// Lines that cannot run here, exactly as they stand, and why.
-const NOT_RUN: [(&str, &str); 18] = [
+const NOT_RUN: [(&str, &str); 22] = [
     ("tracelight studio", "opens a browser"),
     ("tracelight studio examples/sign.svg --folder out/studio --no-open", "waits for Ctrl-C"),
     ("tracelight home --by-stops --rig /dev/ttyACM0:my-head.toml", "a real board"),
@@ -32,6 +32,10 @@ const NOT_RUN: [(&str, &str); 18] = [
     ("tracelight jog --to 30cm,20cm --rig /dev/ttyACM0", "a real board"),
     ("tracelight jog 2deg,0deg --dot 1s --rig /dev/ttyACM0", "a real board"),
     ("tracelight park --rig /dev/ttyACM0", "a real board"),
+    ("tracelight rig share /dev/ttyACM0 --for 10min", "a real board"),
+    ("tracelight stop", "makes heads dark that other tests drive"),
+    ("tracelight stop /dev/ttyACM0", "a real board"),
+    ("tracelight watch /dev/ttyACM0 --for 10s --json", "a real board"),
     ("tracelight completions bash > /etc/bash_completion.d/tracelight", "writes into the system's folders"),
 ];
 

@@ -1,54 +1,16 @@
 //! An emulated board at a pseudo-terminal: looked at, driven by a host of another thread in real time, held by one program at a time.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
-
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use tracelight_aim::HeadPose;
 use tracelight_device::{Host, Stage};
-use tracelight_pipeline::request_of;
-use tracelight_port::{Device, Port, Served, Serving, examine, examined_json, examined_text, serve};
+use tracelight_port::{Device, Port, examine, examined_json, examined_text, serve};
 use tracelight_rig::{Command, PanTilt, Phase, RateLimit, Segment};
 use tracelight_session::{Request, Session, State};
-use tracelight_sim::{RigConfig, SimulatedRig, job_of};
-use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
-use tracelight_task::{Failure, NoProgress, Stop, Task};
-use tracelight_trajectory::plan;
+use tracelight_sim::{RigConfig, job_of};
+use tracelight_task::{NoProgress, Stop, Task};
 
-fn serving<'a>(config: &'a RigConfig, at: &'a std::path::Path) -> Serving<'a> {
-    Serving {
-        rig: SimulatedRig::new(config, HeadPose::square_on(0.9144), 1).served(),
-        name: &config.name,
-        at,
-        lasts_s: None,
-    }
-}
-
-/// Serves a rig for as long as something is done with it.
-fn served(rig: &str, name: &str, with: impl FnOnce(&std::path::Path)) -> Result<Served, Failure> {
-    let path = std::env::temp_dir().join(format!("tracelight-{name}-{}", std::process::id()));
-    let config = RigConfig::preset(rig).unwrap();
-    let stop = Stop::default();
-    std::thread::scope(|threads| {
-        let (stop_it, at) = (&stop, path.clone());
-        let board = threads.spawn(move || {
-            let task = Task { progress: &NoProgress, stop: stop_it };
-            serve(serving(&config, &at), task)
-        });
-        let until = Instant::now() + Duration::from_secs(5);
-        while !path.exists() && Instant::now() < until && !board.is_finished() {
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        // whatever fails in there, the board ends
-        let done = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| with(&path)));
-        stop.want();
-        let served = board.join().unwrap();
-        done.unwrap();
-        served
-    })
-}
+use crate::{circle, served, serving};
 
 #[test]
 fn a_board_says_what_it_is_and_how_good_its_line_is() {
@@ -66,9 +28,12 @@ fn a_board_says_what_it_is_and_how_good_its_line_is() {
             "absolute encoders",
             "power-up",
             "there and back in",
+            "its ticks are known to",
         ] {
             assert!(text.contains(words), "{words}: {text}");
         }
+        // half of the way there and back at most
+        assert!(seen.ticks_known_ms.is_some_and(|ms| ms < 5.0), "{:?}", seen.ticks_known_ms);
         let json = examined_json(&seen);
         assert_eq!((&json["segments"], &json["tick_ns"]), (&384.into(), &1_000_000.into()));
         // and again: who has left it leaves it as it was
@@ -180,12 +145,7 @@ fn a_host_of_another_thread_configures_arms_and_lights_it() {
 #[test]
 fn a_session_parks_arms_and_traces_a_drawing_through_a_port() {
     let config = RigConfig::preset("report").unwrap();
-    let pose = HeadPose::square_on(0.9144);
-    let mut path = Path::new(Point::new(0.05, 0.0));
-    path.push(Element::Arc { centre: Point::ORIGIN, sweep: std::f64::consts::TAU });
-    path.close();
-    let drawing = Drawing { strokes: vec![Stroke::new(path)] };
-    let plan = plan(&drawing, &config.machine(pose), &request_of(&config)).unwrap();
+    let plan = circle();
     let planned_lit_s =
         plan.lit_ticks().iter().flatten().map(|[from, to]| f64::from(to - from) * 1e-3).sum::<f64>();
     let ran = served("report", "traced", |at| {
