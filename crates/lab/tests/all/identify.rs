@@ -133,7 +133,7 @@ fn without_edge_stamps_a_second_lap_is_better_than_the_first() {
     rig.truth.model.encoder.edge_stamps = false;
     let (rms, max) = laps(&rig, 2);
     println!("counts alone, lap 2 on sixty heads: median {rms:.3} mm rms, 95 % within {max:.3} mm");
-    assert!(rms <= 0.08 && max <= 0.37, "{rms} {max}");
+    assert!(rms <= 0.08 && max <= 0.351, "{rms} {max}");
 }
 
 /// The pan amplifier of the original rig gave 0.08 A/V with its motor turning and 0.1 A/V without.
