@@ -82,12 +82,166 @@ const place = async () => {
   await page.close()
 }
 
+const state = page => page.textContent('#state')
+const lamp = page => page.textContent('#lamp')
+const hold = async (page, time) => {
+  const box = await page.locator('#arm').boundingBox()
+  await page.mouse.move(box.x + 20, box.y + 20)
+  await page.mouse.down()
+  await page.waitForTimeout(time)
+  await page.mouse.up()
+  await page.waitForTimeout(150)
+}
+const ready = async page => {
+  await page.goto(address + '#run')
+  await page.click('#begin')
+  await until(page, 'it does not get ready', () => /Ready/.test(document.getElementById('state').textContent))
+}
+const lit = page => page.evaluate(() => document.body.classList.contains('lit'))
+const untilLit = (page, when) => until(page, `it is not lit ${when}`, () => document.body.classList.contains('lit'))
+const ended = async page => {
+  await page.click('#end')
+  await until(page, 'it does not end', () => !document.getElementById('before').hidden)
+}
+
+// Somebody attends a job: arms by holding, traces, pauses, stops from a field, ends; nothing else lights it.
+const attend = async () => {
+  const page = await opened(1280, 900)
+  await ready(page)
+  check(/✓|⚠/.test(await page.textContent('#checks')), 'nothing was looked at before light')
+  await hold(page, 700)
+  check(/Ready/.test(await state(page)), 'it is armed by less than a second')
+  await hold(page, 1100)
+  check(/Armed/.test(await lamp(page)), 'holding does not arm')
+  await until(page, 'arming does not run out', () => /Ready/.test(document.getElementById('state').textContent))
+  await page.keyboard.down('a')
+  await page.waitForTimeout(1100)
+  await page.keyboard.up('a')
+  await page.waitForTimeout(150)
+  check(/Armed/.test(await lamp(page)), 'holding the key A does not arm')
+  await page.keyboard.press(' ')
+  await page.waitForTimeout(200)
+  check(!(await lit(page)), 'Space begins light')
+  await page.click('#go')
+  await untilLit(page, 'once it is armed')
+  await page.click('#pause-now')
+  await until(page, 'it does not pause', () => /Paused/.test(document.getElementById('state').textContent) && !document.body.classList.contains('lit'))
+  await page.keyboard.press(' ')
+  await untilLit(page, 'after a pause')
+  // somebody else looks on, and may stop it
+  const other = await opened(820, 1100)
+  await until(other, 'another page does not show the run', () => location.hash === '#run' && !document.getElementById('viewer').hidden)
+  check(await other.isDisabled('#arm') && await other.isDisabled('#pause'), 'who looks on may operate it')
+  const began = Date.now()
+  await other.click('#stop')
+  await until(page, 'another page does not stop it', () => /Stopped/.test(document.getElementById('state').textContent))
+  const took = Date.now() - began
+  check(!(await lit(page)), 'what is stopped is lit')
+  await hold(page, 1100)
+  await page.click('#go')
+  await untilLit(page, 'after it was stopped')
+  await page.focus('#faster')
+  await page.keyboard.press('Escape')
+  await until(page, 'Esc does not stop it', () => /Stopped/.test(document.getElementById('state').textContent))
+  // who takes it over gets it dark
+  await other.click('#take')
+  await until(page, 'the operator is not asked', () => !document.getElementById('asks').hidden)
+  await page.click('#refuse')
+  await until(other, 'who is refused is not told', () => /keeps it/.test(document.getElementById('said').textContent))
+  await ended(page)
+  check(/Stopped/.test(await page.textContent('#attended')), 'it is not told how it ended')
+  await other.context().close()
+  await page.context().close()
+  return took
+}
+
+// Whoever operates it is lost: dark within two seconds, and another page may have it.
+const lost = async () => {
+  const page = await opened(1280, 900)
+  await ready(page)
+  await hold(page, 1100)
+  await page.click('#go')
+  await untilLit(page, 'for who is lost')
+  const other = await opened(390, 844)
+  await until(other, 'another page does not show the run', () => location.hash === '#run' && document.body.classList.contains('lit'))
+  const began = Date.now()
+  await page.context().close()
+  await until(other, 'a lost operator leaves it lit', () => /Paused, dark/.test(document.getElementById('state').textContent))
+  const took = Date.now() - began
+  check(took <= 2200, `a lost operator leaves it lit for ${took} ms`)
+  await other.click('#take')
+  await until(other, 'nobody may take over', () => document.getElementById('viewer').hidden)
+  await ended(other)
+  await other.context().close()
+  return took
+}
+
+// Stroke by stroke, and point by point; a frame first.
+const steps = async () => {
+  const page = await opened(390, 844)
+  await page.goto(address + '#run')
+  await page.click('text=Step')
+  await page.selectOption('#times', '8')
+  await page.click('#begin')
+  await until(page, 'it does not get ready', () => /Ready/.test(document.getElementById('state').textContent))
+  await hold(page, 1100)
+  await page.click('#go')
+  for (const number of [1, 2, 3]) {
+    await until(page, `stroke ${number} is not drawn`, `/again and again/.test(document.getElementById('state').textContent) && /stroke ${number} of/.test(document.getElementById('where').textContent)`)
+    await page.click('#next')
+  }
+  await ended(page)
+  await page.click('text=Points')
+  await page.click('#begin')
+  await until(page, 'it does not get ready', () => /Ready/.test(document.getElementById('state').textContent))
+  await hold(page, 1100)
+  await page.click('#go')
+  await until(page, 'no point is marked', () => / 1 of /.test(document.getElementById('where').textContent))
+  await page.click('#next')
+  await until(page, 'the next point is not marked', () => / 2 of /.test(document.getElementById('where').textContent))
+  await ended(page)
+  await page.click('text=Trace')
+  await page.selectOption('#frame', 'box')
+  await page.click('#begin')
+  await until(page, 'it does not get ready', () => /Ready/.test(document.getElementById('state').textContent))
+  await hold(page, 1100)
+  await page.click('#go')
+  await until(page, 'the frame is not shown', () => /frame/.test(document.getElementById('state').textContent) && document.body.classList.contains('lit'))
+  await page.click('#go')
+  await until(page, 'the drawing does not follow its frame', () => /stroke 1 of/.test(document.getElementById('where').textContent))
+  await ended(page)
+  await page.context().close()
+}
+
+// Whatever keys are pressed, one or two at once, on whatever view: no light.
+const keys = async () => {
+  const page = await opened(1280, 900)
+  const all = ['Enter', ' ', 'a', 'f', 't', 'r', 'n', 'p', '.', ',', '+', 'PageDown', 'ArrowRight', 'Tab']
+  for (const view of ['', '#run', '#runs']) {
+    await page.goto(address + view)
+    if (view === '#run') await ready(page)
+    await page.evaluate(() => /** @type {HTMLElement} */ (document.activeElement)?.blur())
+    for (const one of all) {
+      for (const other of all) {
+        await page.keyboard.down(one)
+        if (other !== one) await page.keyboard.press(other)
+        await page.keyboard.up(one)
+        if (await lit(page)) complaints.push(`${one} and ${other} on ${view || 'place'} light it`)
+      }
+      await page.evaluate(() => /** @type {HTMLElement} */ (document.activeElement)?.blur())
+    }
+  }
+  await page.goto(address + '#run')
+  await ended(page)
+  await page.context().close()
+}
+
 const looks = async () => {
   for (const [width, height] of [[1280, 800], [820, 1100], [390, 844]]) {
     for (const theme of ['light', 'dark', 'room']) {
       const page = await opened(width, height)
       await page.evaluate(name => localStorage.setItem('theme', name), theme)
-      for (const view of ['', '#runs']) {
+      for (const view of ['', '#run', '#runs']) {
         await page.goto(address + view)
         await page.reload()
         await page.waitForTimeout(400)
@@ -104,8 +258,12 @@ const looks = async () => {
 
 const took = await firstMinute()
 await place()
+const stopped = await attend()
+const dark = await lost()
+await steps()
+await keys()
 await looks()
 await browser.close()
 for (const complaint of complaints) console.error(complaint)
 if (complaints.length) process.exit(1)
-console.log(`the studio was used: the house is traced ${took} s after a click`)
+console.log(`the studio was used: the house is traced ${took} s after a click, stopped ${stopped} ms after one on another page, dark ${dark} ms after its operator was lost`)

@@ -56,8 +56,11 @@ impl AxisConfig {
         (command_v.abs() - self.dead_band_v).max(0.0).copysign(command_v)
     }
 
-    /// Current of the motor for what comes of its command, at a speed, as a share of the largest at standstill.
-    pub(crate) fn current_share(&self, beyond_v: f32, rate_rad_s: f32) -> f32 {
-        (beyond_v - self.back_emf_v_s_per_rad * rate_rad_s) / self.limit_v
+    /// Voltage of the turning motor at a speed, as a share of the amplifier's limit.
+    pub(crate) fn back_emf_share(&self, rate_rad_s: f32) -> f32 {
+        if self.back_emf_v_s_per_rad == 0.0 {
+            return 0.0;
+        }
+        self.back_emf_v_s_per_rad * rate_rad_s / self.limit_v
     }
 }

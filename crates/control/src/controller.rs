@@ -365,12 +365,12 @@ impl Controller {
             // joints that nothing holds go where they like, and nobody counts it
             state.supervisor.homed &= !self.config.drive.is_open_loop();
             // a motor cools meanwhile; what it still is too hot for is known
-            let _ = state.watch.drive(&self.config, &state.servo, &none);
+            let _ = state.watch.drive(&self.config, &state.servo);
             return none;
         }
         let volts = state.servo.drive(&self.config, &reference);
         let unsound = (!state.servo.is_sound()).then_some(Finding::of(Fault::NotANumber));
-        if let Some(found) = unsound.or(state.watch.drive(&self.config, &state.servo, &volts)) {
+        if let Some(found) = unsound.or(state.watch.drive(&self.config, &state.servo)) {
             state.supervisor.trip(state.tick, found);
         }
         volts

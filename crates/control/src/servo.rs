@@ -14,8 +14,8 @@ pub struct Servo {
     estimates: PanTilt<Estimate>,
     /// What acted on the joints during the last tick.
     efforts: PanTilt<Effort>,
-    /// Torque of the motors in this tick, N m.
-    torque_nm: PanTilt<f32>,
+    /// Commands of the amplifiers in this tick beyond their dead bands, V.
+    beyond_v: PanTilt<f32>,
     /// The last volts were numbers.
     sound: bool,
     /// Where the joints were told to be at the start of this tick.
@@ -65,10 +65,10 @@ impl Servo {
     fn begin(config: &Config, observer: impl FnMut(Joint) -> Observer) -> Self {
         let observers = PanTilt::from_fn(observer);
         let estimates = PanTilt::from_fn(|j| observers[j].estimate(&config.axes[j]));
-        let torque_nm = PanTilt::default();
-        let efforts = efforts(config, &estimates, torque_nm);
+        let beyond_v = PanTilt::default();
+        let efforts = efforts(config, &estimates, &beyond_v);
         let told = PanTilt::default();
-        Self { observers, laws: PanTilt::default(), estimates, efforts, torque_nm, sound: true, told }
+        Self { observers, laws: PanTilt::default(), estimates, efforts, beyond_v, sound: true, told }
     }
 
     /// Estimates of both joints.
@@ -111,7 +111,7 @@ impl Servo {
             self.estimates = self.told.map(|told| believed(&moved_on(&told)));
             return;
         }
-        self.efforts = efforts(config, &self.estimates, self.torque_nm);
+        self.efforts = efforts(config, &self.estimates, &self.beyond_v);
         for joint in Joint::BOTH {
             self.observers[joint].tick(&config.axes[joint], &self.efforts[joint], &measured[joint]);
             self.estimates[joint] = self.observers[joint].estimate(&config.axes[joint]);
@@ -141,7 +141,7 @@ impl Servo {
             limited
         });
         self.sound = sound;
-        self.push(config, volts);
+        self.beyond_v = volts;
         PanTilt::from_fn(|j| config.axes[j].command_v(volts[j]))
     }
 
@@ -156,17 +156,17 @@ impl Servo {
 
     /// Commands of the amplifiers that something else decided on for this tick, V: a record is played.
     pub fn apply(&mut self, config: &Config, command_v: PanTilt<f32>) {
-        self.push(config, PanTilt::from_fn(|j| config.axes[j].beyond_v(command_v[j])));
+        self.beyond_v = PanTilt::from_fn(|j| config.axes[j].beyond_v(command_v[j]));
     }
 
-    /// Volts beyond the amplifiers' dead bands for this tick.
-    fn push(&mut self, config: &Config, beyond_v: PanTilt<f32>) {
-        self.torque_nm = PanTilt::from_fn(|j| beyond_v[j] * config.axes[j].torque_nm_per_v);
+    /// Commands of the amplifiers in this tick beyond their dead bands, V.
+    pub(crate) const fn beyond_v(&self) -> &PanTilt<f32> {
+        &self.beyond_v
     }
 
     /// No volts in this tick; joints that are told where to be stay.
     pub fn coast(&mut self) -> PanTilt<f32> {
-        self.torque_nm = PanTilt::default();
+        self.beyond_v = PanTilt::default();
         self.told = self.told.map(|told| Setpoint::at_rest(told.position_rad));
         PanTilt::default()
     }
@@ -194,12 +194,12 @@ fn believed(told: &Setpoint) -> Estimate {
 }
 
 /// What acts on the joints where they are believed to be.
-fn efforts(config: &Config, at: &PanTilt<Estimate>, torque_nm: PanTilt<f32>) -> PanTilt<Effort> {
+fn efforts(config: &Config, at: &PanTilt<Estimate>, beyond_v: &PanTilt<f32>) -> PanTilt<Effort> {
     let terms = config.model.terms(at.tilt.position_rad, at.map(|estimate| estimate.velocity_rad_s));
     let acceleration = at.map(|estimate| estimate.acceleration_rad_s2);
     let coupling = PanTilt::new(terms.m12 * acceleration.tilt, terms.m12 * acceleration.pan);
     PanTilt::from_fn(|j| Effort {
-        torque_nm: torque_nm[j],
+        torque_nm: beyond_v[j] * config.axes[j].torque_nm_per_v,
         bias_nm: terms.bias_nm[j] + coupling[j] - config.axes[j].quirks.cable.torque_nm(at[j].position_rad),
         inertia_kg_m2: terms.own_inertia()[j],
     })

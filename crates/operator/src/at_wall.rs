@@ -1,6 +1,7 @@
 //! Somebody at the wall: keys and the clock to a job, what happens to a terminal or a script.
 
 use std::io::Write as _;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use tracelight_job::{Ask, Hands, Look, Step};
@@ -13,6 +14,7 @@ use tracelight_stroke::Place;
 use tracelight_task::{Pace, Stop, Task};
 
 use crate::keys::{Key, Keys};
+use crate::seat::{Seat, Wish};
 
 /// What the keys do.
 const HELP: &str = "keys: Space pauses after this stroke, and goes on; P pauses at once; Esc stops; A arms, Enter goes on after that; + and − change the speed, \
@@ -25,6 +27,8 @@ const FRAME_HELP: &str = "keys: the frame is drawn until Space, Enter or → beg
                           + and − change the speed; C clears a fault; Q ends; ? shows this";
 /// How often progress is told, ticks of the rig.
 const PROGRESS_TICKS: u32 = 250;
+/// How often whoever has a seat is told it.
+const SEAT_EACH: Duration = Duration::from_millis(40);
 
 /// How somebody at the wall attends a job.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -52,6 +56,9 @@ pub struct AtWall<'a> {
     stop: &'a Stop,
     clock: Option<Pace>,
     keys: Option<Keys>,
+    /// Who attends from elsewhere, and when he was last told how far it is.
+    seat: Option<&'a dyn Seat>,
+    seat_told: Option<Instant>,
     /// Strokes mark points.
     points: bool,
     /// The frame is drawn.
@@ -69,12 +76,12 @@ pub struct AtWall<'a> {
 }
 
 impl<'a> AtWall<'a> {
-    /// Whoever stands there, if the job runs by hand at all.
+    /// Whoever stands there, or sits elsewhere, if the job runs by hand at all.
     #[must_use]
-    pub fn of(how: Attending, task: Task<'a>, stop: &'a Stop) -> Option<Self> {
+    pub fn of(how: Attending, seat: Option<&'a dyn Seat>, task: Task<'a>, stop: &'a Stop) -> Option<Self> {
         let Attending { real_time, keeps_time, each_s, framing, steps, events, .. } = how;
         let by_the_clock = real_time.is_some() || keeps_time;
-        if !by_the_clock && !events && !steps {
+        if !by_the_clock && !events && !steps && seat.is_none() {
             return None;
         }
         Some(Self {
@@ -82,7 +89,10 @@ impl<'a> AtWall<'a> {
             task,
             stop,
             clock: real_time.filter(|_| !keeps_time).map(|factor| Pace::new(TICK_F64_S / factor)),
-            keys: by_the_clock.then(Keys::listen).flatten(),
+            // a terminal from which somebody else is served is not his
+            keys: (by_the_clock && seat.is_none()).then(Keys::listen).flatten(),
+            seat,
+            seat_told: None,
             points: false,
             framing,
             look: None,
@@ -155,6 +165,20 @@ impl<'a> AtWall<'a> {
         }
     }
 
+    /// Tells who has a seat how far it is, and hears what he asks.
+    fn seated(&mut self, now: &Snapshot) -> Option<Ask> {
+        let seat = self.seat?;
+        if self.seat_told.is_none_or(|told| told.elapsed() >= SEAT_EACH) {
+            self.seat_told = Some(Instant::now());
+            seat.tell(&snapshot_json(now));
+        }
+        let wish = seat.wish()?;
+        if wish == Wish::End {
+            self.stop.want();
+        }
+        Some(wish.ask())
+    }
+
     /// The next one, where it is time for it by itself. One that was paused has its whole time again.
     fn by_itself(&mut self, now: &Snapshot) -> Option<Ask> {
         let each = self.each_ticks?;
@@ -169,6 +193,7 @@ impl<'a> AtWall<'a> {
 
     /// Prints an event. Where nobody reads them any more the job ends, and its results are kept.
     fn print(&self, event: &Value) {
+        self.seat.iter().for_each(|seat| seat.tell(event));
         if self.how.events && writeln!(std::io::stdout(), "{event}").is_err() {
             self.stop.want();
         }
@@ -180,7 +205,10 @@ impl Hands for AtWall<'_> {
         if let Some(clock) = &mut self.clock {
             clock.wait();
         }
-        if now.tick.is_multiple_of(PROGRESS_TICKS) {
+        if let Some(ask) = self.seated(now) {
+            return Some(ask);
+        }
+        if self.seat.is_none() && now.tick.is_multiple_of(PROGRESS_TICKS) {
             self.print(&snapshot_json(now));
         }
         let Some(key) = self.keys.as_ref().and_then(Keys::next) else { return self.by_itself(now) };
@@ -266,7 +294,7 @@ impl Hands for AtWall<'_> {
     }
 
     fn is_there(&self) -> bool {
-        self.keys.is_some()
+        self.keys.is_some() || self.seat.is_some()
     }
 }
 

@@ -35,6 +35,6 @@ pub fn snapshot_json(now: &Snapshot) -> Value {
     json!({
         "event": "progress", "t_s": seconds(now.tick), "state": now.state.name(), "plan_s": seconds(now.plan_tick),
         "of_s": seconds(now.plan_ticks), "stroke": now.stroke.map(|stroke| stroke + 1), "strokes": now.strokes, "laps": now.laps,
-        "speed": now.speed, "gate": now.gate,
+        "speed": now.speed, "gate": now.gate, "armed_s": seconds(now.armed_ticks),
     })
 }

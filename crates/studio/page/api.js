@@ -9,7 +9,7 @@
  * @typedef {{ target: { width_m: number, height_m: number, corners_m: [number, number][] }, strokes: { count: number, length_m: number }, plan: { duration_s: number },
  *   head: { spot_mm: number, best_distance_m: number, distance_m: number }, sequence: Stroke[] }} PlanFigures
  * @typedef {{ id: number, command: string, plan: PlanFigures, remarks: string[], points: string }} Plan
- * @typedef {{ id: number, run: string, picture: string, stage: string, done: number, of: number, remarks: string[], over: boolean, answer: any, failure: Failure | null }} Job
+ * @typedef {{ id: number, run: string, picture: string, stage: string, done: number, of: number, remarks: string[], over: boolean, live: boolean, answer: any, failure: Failure | null }} Job
  */
 
 /** A refusal, with what the program says about it. */
@@ -52,6 +52,8 @@ export const pictureUrl = (id) => `/api/v1/pictures/${encodeURIComponent(id)}`
 export const plan = (asked, signal) => post('/plans', asked, signal)
 /** @param {{ picture: string, flags: Flags }} asked @returns {Promise<Job>} */
 export const trace = (asked) => post('/jobs', asked)
+/** Begins a job that a page operates: dark, until somebody arms it. @param {{ page: string, picture: string, flags: Flags }} asked @returns {Promise<Job>} */
+export const attend = (asked) => post('/jobs', { ...asked, attended: true })
 /** @returns {Promise<Job | null>} */
 export const job = async () => (await json('/jobs/current')).job
 export const stop = () => post('/stop', {})

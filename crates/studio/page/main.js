@@ -4,6 +4,7 @@
 import * as api from './api.js'
 import { Fields } from './fields.js'
 import { element, follow, showResult, showRuns } from './runs.js'
+import { Run } from './run.js'
 import { Store } from './store.js'
 import { Timeline } from './timeline.js'
 import { NOWHERE, Wall } from './wall.js'
@@ -73,6 +74,16 @@ function boxOf(flags) {
   const degree = degrees(String(flags.rotate ?? ''))
   return { ...was, x, y, turn: degree === null ? was.turn : (degree * Math.PI) / 180 }
 }
+
+const run = new Run(page, {
+  asked: () => store.asked,
+  at: (share) => (share < 0 ? timeline.rest() : timeline.to(share)),
+  stroke: (number) => wall.upTo(number),
+  mark: (at) => wall.marks(at),
+  ended: (job) => showResult(by('attended'), job),
+  problem,
+  lamp,
+})
 
 let asked = 0
 let timer = 0
@@ -213,13 +224,19 @@ function setTracing(is) {
   if (!is) lamp('● Dark')
 }
 
-/** @param {string} text */
-function lamp(text) {
-  by('lamp').textContent = text
+/** What light there is, as far as it is known. @param {string} text @param {boolean} [lit] */
+function lamp(text, lit = false) {
+  const place = by('lamp')
+  if (place.textContent !== text) place.textContent = text
+  place.classList.toggle('lit', lit)
+  place.classList.toggle('unknown', text.startsWith('?'))
+  document.body.classList.toggle('lit', lit)
 }
 
 async function stop() {
   by('stop').classList.add('pressed')
+  // by both ways: whichever is quicker
+  run.stop()
   try {
     await api.stop()
   } catch (error) {
@@ -265,9 +282,15 @@ async function list() {
 /** Shows the view that the address names. */
 function view() {
   const runs = location.hash === '#runs'
+  const attends = location.hash === '#run'
   by('place').hidden = runs
   by('runs').hidden = !runs
-  for (const [id, is] of /** @type {[string, boolean][]} */ ([['to-place', !runs], ['to-runs', runs]])) {
+  by('placing').hidden = attends
+  by('attend').hidden = !attends
+  document.body.classList.toggle('attending', attends)
+  wall.fixed = attends
+  wall.dirty = true
+  for (const [id, is] of /** @type {[string, boolean][]} */ ([['to-place', !runs && !attends], ['to-run', attends], ['to-runs', runs]])) {
     if (is) by(id).setAttribute('aria-current', 'page')
     else by(id).removeAttribute('aria-current')
   }
@@ -286,11 +309,13 @@ function key(event) {
     return letter === 'y' || event.shiftKey ? store.redo() : store.undo()
   }
   if (types || event.ctrlKey || event.metaKey || event.altKey) return
-  if (event.key === ' ' && !target.closest('button, summary, a')) {
+  if (location.hash === '#run' && !target.closest('button, summary, a, input') && run.key(event)) return event.preventDefault()
+  if (event.key === ' ' && location.hash !== '#run' && !target.closest('button, summary, a')) {
     event.preventDefault()
     timeline.toggle()
   }
   if (target !== by('wall')) return
+  if (wall.fixed && event.key.startsWith('Arrow')) return
   const ways = /** @type {Record<string, [number, number]>} */ ({ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] })
   const way = ways[event.key]
   if (way) {
@@ -365,6 +390,7 @@ by('theme').addEventListener('click', () => {
   theme(THEMES[(at + 1) % THEMES.length][0])
 })
 addEventListener('keydown', key)
+addEventListener('keyup', () => run.released())
 addEventListener('hashchange', view)
 addEventListener('paste', (event) => take(event.clipboardData?.files[0]))
 addEventListener('dragover', (event) => event.preventDefault())
@@ -383,9 +409,13 @@ api.about().then((told) => (folder = told.folder)).then(view, problem)
 
 /** Looks whether somebody traces: another page, or this one before it was loaded again. */
 async function look() {
-  if (tracing) return
+  if (tracing || run.on) return
   const job = await api.job().catch(() => null)
-  if (!job || job.over || tracing) return
+  if (!job || job.over || tracing || run.on) return
+  if (job.live) {
+    location.hash = '#run'
+    return run.followed()
+  }
   setTracing(true)
   await followed()
   if (plan) problem(null)

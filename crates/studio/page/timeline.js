@@ -39,6 +39,12 @@ export class Timeline {
     this.at(-1)
   }
 
+  /** Shows how far a job is. @param {number} share of the plan, 0 to 1 */
+  to(share) {
+    this.#stop()
+    if (this.rows > 1) this.#set(Math.round(share * (this.rows - 1)))
+  }
+
   toggle() {
     if (this.playing) this.#stop()
     else this.play(Number(this.parts.rate.value))

@@ -53,6 +53,10 @@ export class Wall {
     this.lit = new Lit()
     this.dirty = true
     this.first = true
+    /** Whether the drawing stays where it is: it is being drawn there. */
+    this.fixed = false
+    /** @type {[number, number] | null} a place that is marked, m */
+    this.mark = null
     new ResizeObserver(() => this.#resized()).observe(canvas)
     this.#listen()
     const frame = () => {
@@ -199,7 +203,8 @@ export class Wall {
       context.restore()
       if (this.tick >= 0 && still) this.#light(colours)
     }
-    if (this.points) this.#handles(colours)
+    if (this.points && !this.fixed) this.#handles(colours)
+    if (this.mark) this.#cross(this.mark, colours)
     this.#rulers(colours)
   }
 
@@ -257,6 +262,37 @@ export class Wall {
       this.context.fill()
       this.context.globalAlpha = 1
     }
+  }
+
+  /** A place that the head marks. @param {[number, number]} at @param {Colours} colours */
+  #cross(at, colours) {
+    const [x, y] = this.#pixels(at)
+    const { context } = this
+    context.strokeStyle = colours.light
+    context.lineWidth = 3
+    context.beginPath()
+    for (const [dx, dy] of [[16, 0], [0, 16]]) {
+      context.moveTo(x - dx, y - dy)
+      context.lineTo(x + dx, y + dy)
+    }
+    context.moveTo(x + 24, y)
+    context.arc(x, y, 24, 0, 2 * Math.PI)
+    context.stroke()
+  }
+
+  /** Marks a place, or none. @param {[number, number] | null} at */
+  marks(at) {
+    this.mark = at
+    this.dirty = true
+  }
+
+  /** Shows the drawing up to the end of a stroke. @param {number} number from 1 */
+  upTo(number) {
+    const { points } = this
+    if (!points) return
+    let row = points.rows - 1
+    while (row > 0 && !(points.lit[row] > 0 && points.stroke[row] <= number)) row--
+    this.at(row)
   }
 
   /** @param {Colours} colours */
@@ -362,7 +398,7 @@ export class Wall {
 
   /** What lies under a pixel. @param {[number, number]} at */
   #under([px, py]) {
-    if (!this.points) return 'pan'
+    if (!this.points || this.fixed) return 'pan'
     const near = (/** @type {[number, number]} */ [x, y], /** @type {number} */ far) => Math.hypot(px - x, py - y) < far
     if (near(this.#ring(), 16)) return 'turn'
     if (this.#corners(this.box).some((corner) => near(this.#pixels(corner), 16))) return 'size'

@@ -28,7 +28,7 @@ macro_rules! script {
 }
 
 /// The page first.
-pub(crate) static ASSETS: [Asset; 12] = [
+pub(crate) static ASSETS: [Asset; 15] = [
     asset!("index.html", "text/html; charset=utf-8"),
     asset!("style.css", "text/css; charset=utf-8"),
     asset!("icon.svg", "image/svg+xml"),
@@ -40,6 +40,9 @@ pub(crate) static ASSETS: [Asset; 12] = [
     script!("timeline.js"),
     script!("fields.js"),
     script!("runs.js"),
+    script!("run.js"),
+    script!("live.js"),
+    script!("hold.js"),
     script!("words.js"),
 ];
 

@@ -9,10 +9,11 @@ use axum::body::Bytes;
 use serde_json::{Map, Value, json};
 use tracelight_task::Failure;
 
-use crate::flags::{arguments, typed};
+use crate::flags::{Which, arguments, typed};
 use crate::folder::Folder;
+use crate::live::Live;
 use crate::points;
-use crate::program::{Performed, Program};
+use crate::program::{Performed, Program, Seat};
 use crate::tasks::{AtLast, Ended, Work};
 
 /// Plans whose points are kept for pages to fetch.
@@ -31,6 +32,8 @@ pub(crate) struct Desk {
     /// Held while a plan is made: each takes all of the processor.
     planning: Mutex<()>,
     job: Mutex<Option<Job>>,
+    /// What pages and a job that they attend say to each other.
+    pub(crate) live: Live,
 }
 
 /// A picture that is traced, or the last one that was.
@@ -39,6 +42,8 @@ struct Job {
     work: Arc<Work>,
     run: String,
     picture: String,
+    /// Whether pages attend it.
+    live: bool,
 }
 
 fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -55,6 +60,7 @@ impl Desk {
             asked: Mutex::default(),
             planning: Mutex::default(),
             job: Mutex::default(),
+            live: Live::new(),
         }
     }
 
@@ -63,7 +69,13 @@ impl Desk {
     }
 
     /// The command line of what a page asks for.
-    fn command(&self, name: &str, picture: &str, flags: &Map<String, Value>) -> Result<Vec<String>, Failure> {
+    fn command(
+        &self,
+        name: &str,
+        picture: &str,
+        flags: &Map<String, Value>,
+        which: Which,
+    ) -> Result<Vec<String>, Failure> {
         let Some(path) = self.folder.picture(picture) else {
             return Err(Failure::usage(
                 "unreadable",
@@ -71,7 +83,7 @@ impl Desk {
             ));
         };
         let mut command = vec![name.to_owned(), path.to_string_lossy().into_owned()];
-        command.extend(arguments(flags, &self.program.rigs())?);
+        command.extend(arguments(flags, which, &self.program.rigs())?);
         Ok(command)
     }
 
@@ -104,7 +116,7 @@ impl Desk {
         picture: &str,
         flags: &Map<String, Value>,
     ) -> Result<Value, Failure> {
-        let command = self.command("plan", picture, flags)?;
+        let command = self.command("plan", picture, flags, Which::Drawing)?;
         let work = self.work();
         let _ended = AtLast(Arc::clone(&work));
         self.wish(page, &work)?;
@@ -114,7 +126,7 @@ impl Desk {
         let table = self.folder.table(work.id);
         let out = ["-o".to_owned(), table.to_string_lossy().into_owned(), "--json".to_owned()];
         let all: Vec<String> = command.iter().cloned().chain(out).collect();
-        let planned = self.program.perform(&all, &*work, &work.stop);
+        let planned = self.program.perform(&all, None, (&*work, &work.stop));
         let text = fs::read_to_string(&table).unwrap_or_default();
         // what cannot be removed is written over another time
         let _ = fs::remove_file(&table);
@@ -138,7 +150,7 @@ impl Desk {
         locked(&self.plans).iter().find(|(known, _)| *known == id).map(|(_, bytes)| bytes.clone())
     }
 
-    /// Begins to trace a picture on the simulated rig; what is to be run then.
+    /// Begins to trace a picture on the simulated rig, as fast as that can or, where a page operates it, by the clock; what is to be run then.
     ///
     /// # Errors
     /// `busy` while another one is; what is wrong with the flags.
@@ -146,8 +158,13 @@ impl Desk {
         self: &Arc<Self>,
         picture: &str,
         flags: &Map<String, Value>,
+        operator: Option<&str>,
     ) -> Result<(Value, impl FnOnce() + Send + use<>), Failure> {
-        let mut command = self.command("trace", picture, flags)?;
+        let which = if operator.is_some() { Which::Attended } else { Which::Drawing };
+        let mut command = self.command("trace", picture, flags, which)?;
+        if operator.is_some() && !command.iter().any(|argument| argument.starts_with("--real-time")) {
+            command.push("--real-time=1".to_owned());
+        }
         let work = self.work();
         {
             let mut job = locked(&self.job);
@@ -155,7 +172,9 @@ impl Desk {
                 let message = "a picture is being traced: stop it, or wait until it is done";
                 return Err(Failure::failed("busy", message));
             }
-            *job = Some(Job { work: Arc::clone(&work), run: String::new(), picture: picture.to_owned() });
+            let live = operator.is_some();
+            *job =
+                Some(Job { work: Arc::clone(&work), run: String::new(), picture: picture.to_owned(), live });
         }
         // from here on it ends, whatever becomes of it
         let last = AtLast(Arc::clone(&work));
@@ -165,14 +184,19 @@ impl Desk {
         }
         command.extend(["--out".to_owned(), dir.to_string_lossy().into_owned(), "--json".to_owned()]);
         let desk = Arc::clone(self);
-        let begun = self.job();
+        let (begun, is_live) = (self.job(), operator.is_some());
+        operator.iter().for_each(|page| self.live.begin(page));
         Ok((begun, move || {
             let _last = last;
-            let done = desk.program.perform(&command, &*work, &work.stop).and_then(|performed| {
+            // whatever becomes of it, pages are told that it is over
+            let live = Attended(&desk.live);
+            let seat = is_live.then_some(live.0 as &dyn Seat);
+            let done = desk.program.perform(&command, seat, (&*work, &work.stop)).and_then(|performed| {
                 let failure = performed.failure.clone();
                 Ok(Ended { answer: json_of(performed)?, failure })
             });
             work.end(done.unwrap_or_else(|failure| Ended { answer: Value::Null, failure: Some(failure) }));
+            drop(live);
         }))
     }
 
@@ -183,12 +207,21 @@ impl Desk {
             let mut told = job.work.json();
             told["run"] = json!(job.run);
             told["picture"] = json!(job.picture);
+            told["live"] = json!(job.live);
             told
         })
     }
 
-    /// Ends the job in hand, dark; whether there was one.
+    /// Stops the job in hand, dark; whether there was one. One that pages attend is held, to go on or to be ended; any other one is over.
     pub(crate) fn stop(&self) -> bool {
+        if self.live.is_on() {
+            return self.live.stop();
+        }
+        self.end()
+    }
+
+    /// Ends the job in hand, dark; whether there was one.
+    fn end(&self) -> bool {
         let job = locked(&self.job);
         let is_on = job.as_ref().filter(|job| !job.work.is_over());
         is_on.is_some_and(|job| {
@@ -199,7 +232,7 @@ impl Desk {
 
     /// Ends everything in hand.
     pub(crate) fn close(&self) {
-        self.stop();
+        self.end();
         locked(&self.asked).values().for_each(|(_, work)| {
             work.stop.want();
         });
@@ -212,7 +245,16 @@ impl Desk {
     pub(crate) fn ask(&self, command: &[&str]) -> Result<Value, Failure> {
         let command: Vec<String> = command.iter().map(|&word| word.to_owned()).collect();
         let work = self.work();
-        json_of(self.program.perform(&command, &*work, &work.stop)?)
+        json_of(self.program.perform(&command, None, (&*work, &work.stop))?)
+    }
+}
+
+/// A job that pages may attend, for as long as it goes on.
+struct Attended<'a>(&'a Live);
+
+impl Drop for Attended<'_> {
+    fn drop(&mut self) {
+        self.0.end();
     }
 }
 

@@ -35,6 +35,25 @@ const FLAGS: [&str; 29] = [
     "letters",
     "hatch",
 ];
+/// Flags of a job that a page attends.
+const ATTENDED: [&str; 9] =
+    ["real_time", "frame", "dry_run", "step", "points", "mark", "pace", "each", "from_stroke"];
+
+/// Of what flags are asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Which {
+    /// What is drawn, and where.
+    Drawing,
+    /// Likewise, and how somebody attends it.
+    Attended,
+}
+
+impl Which {
+    fn has(self, name: &str) -> bool {
+        FLAGS.contains(&name) || (self == Self::Attended && ATTENDED.contains(&name))
+    }
+}
+
 /// Longest value, bytes: none of these needs more.
 const MOST_BYTES: usize = 200;
 /// How often a flag may be repeated.
@@ -44,10 +63,14 @@ const MOST_TIMES: usize = 100;
 ///
 /// # Errors
 /// `usage`: one that there is not, or a value that none has.
-pub(crate) fn arguments(flags: &Map<String, Value>, rigs: &[String]) -> Result<Vec<String>, Failure> {
+pub(crate) fn arguments(
+    flags: &Map<String, Value>,
+    which: Which,
+    rigs: &[String],
+) -> Result<Vec<String>, Failure> {
     let mut arguments = Vec::new();
     for (name, value) in flags {
-        if !FLAGS.contains(&name.as_str()) {
+        if !which.has(name) {
             let near =
                 nearest(name, FLAGS).map_or_else(String::new, |near| format!("; did you mean {near}?"));
             return Err(refused(format!("{name} is no flag that the studio takes{near}")));
@@ -100,7 +123,7 @@ mod tests {
 
     fn of(flags: Value) -> Result<Vec<String>, Failure> {
         let Value::Object(flags) = flags else { unreachable!() };
-        arguments(&flags, &["report".to_owned(), "worn".to_owned()])
+        arguments(&flags, Which::Drawing, &["report".to_owned(), "worn".to_owned()])
     }
 
     #[test]

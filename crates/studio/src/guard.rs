@@ -1,7 +1,7 @@
 //! Who may ask: pages of this server on this computer, and nobody else's.
 
 use axum::extract::{Request, State};
-use axum::http::header::{HOST, ORIGIN};
+use axum::http::header::{HOST, ORIGIN, UPGRADE};
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
@@ -23,7 +23,9 @@ pub(crate) async fn guard(State(port): State<Port>, request: Request, next: Next
     if !is_own(headers, HOST.as_str(), port, true) {
         return refused("this server is for this computer: open it as http://127.0.0.1 with its port");
     }
-    let changes = !matches!(*request.method(), Method::GET | Method::HEAD);
+    // a socket that is opened is read by GET, and browsers let any page open one
+    let is_socket = headers.contains_key(UPGRADE);
+    let changes = is_socket || !matches!(*request.method(), Method::GET | Method::HEAD);
     let is_foreign =
         headers.get("sec-fetch-site").is_some_and(|site| site != "same-origin" && site != "none");
     if changes && (is_foreign || !is_own(headers, ORIGIN.as_str(), port, false)) {

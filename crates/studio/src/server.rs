@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use axum::body::Bytes;
+use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{DefaultBodyLimit, Path, Query, State};
 use axum::http::header::{
     ACCEPT_ENCODING, CACHE_CONTROL, CONTENT_ENCODING, CONTENT_SECURITY_POLICY, CONTENT_TYPE, ETAG,
@@ -22,6 +23,7 @@ use crate::assets::packed;
 use crate::desk::Desk;
 use crate::folder::{EXAMPLES, MOST_BYTES};
 use crate::guard::{Port, SHOWN, guard};
+use crate::socket::{MOST_MESSAGE, ask, serve_socket, watch_operator};
 use crate::tasks::{broken, failure_json};
 
 /// Everything there is, for a server at that port.
@@ -35,6 +37,8 @@ pub(crate) fn router(desk: Arc<Desk>, port: u16) -> Router {
         .route("/plans/{id}/points", get(points))
         .route("/jobs", post(trace))
         .route("/jobs/current", get(job))
+        .route("/jobs/current/wishes", post(wish))
+        .route("/live", get(live))
         .route("/stop", post(stop))
         .route("/runs", get(runs))
         .route("/runs/{run}/files/{name}", get(run_file));
@@ -136,6 +140,9 @@ struct Asked {
     /// Its number of this wish: of two the higher one counts.
     #[serde(default)]
     number: u64,
+    /// Whether the page operates it: by the clock, and armed from there.
+    #[serde(default)]
+    attended: bool,
 }
 
 /// Reads a request, or says what is wrong with it.
@@ -147,7 +154,7 @@ fn asked(bytes: &[u8]) -> Result<Asked, Refused> {
 }
 
 async fn plan(State(desk): Shared, bytes: Bytes) -> Result<Json<Value>, Refused> {
-    let Asked { picture, flags, page, number } = asked(&bytes)?;
+    let Asked { picture, flags, page, number, .. } = asked(&bytes)?;
     beside(move || desk.plan((&page, number), &picture, &flags)).await.map(Json)
 }
 
@@ -161,12 +168,21 @@ async fn points(State(desk): Shared, Path(id): Path<u64>) -> Response {
 }
 
 async fn trace(State(desk): Shared, bytes: Bytes) -> Result<(StatusCode, Json<Value>), Refused> {
-    let Asked { picture, flags, .. } = asked(&bytes)?;
+    let Asked { picture, flags, page, attended, .. } = asked(&bytes)?;
+    if attended && page.is_empty() {
+        return Err(Refused(Failure::usage(
+            "usage",
+            "a job that is attended names the page that operates it",
+        )));
+    }
     let threads = tokio::runtime::Handle::current();
     // begun where nobody who leaves can interrupt it; it goes on when nobody looks any more
     let begun = beside(move || {
-        let (begun, run) = desk.trace(&picture, &flags)?;
+        let (begun, run) = desk.trace(&picture, &flags, attended.then_some(page.as_str()))?;
         drop(threads.spawn_blocking(run));
+        if attended {
+            drop(threads.spawn(watch_operator(desk)));
+        }
         Ok(begun)
     });
     Ok((StatusCode::ACCEPTED, Json(begun.await?)))
@@ -174,6 +190,32 @@ async fn trace(State(desk): Shared, bytes: Bytes) -> Result<(StatusCode, Json<Va
 
 async fn job(State(desk): Shared) -> Json<Value> {
     Json(json!({ "job": desk.job() }))
+}
+
+/// What a page asks of the job that it operates.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Wished {
+    page: String,
+    wish: String,
+}
+
+async fn wish(State(desk): Shared, bytes: Bytes) -> Result<Json<Value>, Refused> {
+    let usage = |message: String| Refused(Failure::usage("usage", message));
+    let Wished { page, wish } = serde_json::from_slice(&bytes)
+        .map_err(|e| usage(format!("a wish is {{\"page\": ID, \"wish\": WORD}}: {e}")))?;
+    ask(&desk, &page, &wish).map_err(usage)?;
+    Ok(Json(json!({ "asked": wish })))
+}
+
+/// The job's events as they happen, for a page that names itself; what it sends are wishes, and that it is there.
+async fn live(State(desk): Shared, Query(Page { page }): Query<Page>, upgrade: WebSocketUpgrade) -> Response {
+    upgrade.max_message_size(MOST_MESSAGE).on_upgrade(move |socket| serve_socket(desk, page, socket))
+}
+
+#[derive(Deserialize)]
+struct Page {
+    page: String,
 }
 
 /// Never refused, whatever is sent with it.

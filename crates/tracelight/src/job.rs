@@ -10,7 +10,7 @@ use tracelight_files::ResultFolder;
 use tracelight_job::{
     Hands, Head, Nobody, Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall,
 };
-use tracelight_operator::{AtWall, Attending, nobody_arms};
+use tracelight_operator::{AtWall, Attending, Seat, nobody_arms};
 use tracelight_pipeline::told_places;
 use tracelight_port::{At, Device, head};
 use tracelight_report::{LogMeta, Summary};
@@ -36,13 +36,16 @@ pub(crate) struct Outcome {
 }
 
 /// Picture → strokes → target → order → plan → run → results.
-pub(crate) fn trace(args: &TraceArgs, task: Task<'_>) -> Result<Outcome, Failure> {
-    run(args, None, task)
+///
+/// # Errors
+/// What is wrong with the request, or what failed before there was anything to tell.
+pub(crate) fn trace(args: &TraceArgs, seat: Option<&dyn Seat>, task: Task<'_>) -> Result<Outcome, Failure> {
+    run(args, (None, seat), task)
 }
 
 /// The rest of a run that ended on its way, as a run of its own.
 pub(crate) fn resume(args: &TraceArgs, earlier: &Earlier<'_>, task: Task<'_>) -> Result<Outcome, Failure> {
-    run(args, Some(earlier), task)
+    run(args, (Some(earlier), None), task)
 }
 
 /// A run that ended on its way.
@@ -55,9 +58,13 @@ pub(crate) struct Earlier<'a> {
     pub(crate) beside: &'a Path,
 }
 
-fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, task: Task<'_>) -> Result<Outcome, Failure> {
+fn run(
+    args: &TraceArgs,
+    (earlier, seat): (Option<&Earlier<'_>>, Option<&dyn Seat>),
+    task: Task<'_>,
+) -> Result<Outcome, Failure> {
     args.check_camera()?;
-    args.check_keys()?;
+    args.check_keys(seat.is_some())?;
     let (prepared, asked, at) = begun(args, earlier, task)?;
     let device = at.map(|at| connected(args, &at, &prepared, task)).transpose()?;
     let dir = match &args.out {
@@ -74,7 +81,7 @@ fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, task: Task<'_>) -> Resul
     let meta = LogMeta { picture_path: &name, settings: &settings, seed: args.seed };
     let strokes = prepared.schedule.ordered.drawing.strokes.len();
     let mut kept = Records::begin(&folder, &asked, strokes, &meta)?;
-    let (prepared, mut ran) = ran(args, prepared, device, &mut kept, task)?;
+    let (prepared, mut ran) = ran(args, prepared, (device, seat), &mut kept, task)?;
     if let Some(remark) = kept.finish()? {
         task.say(&format!("note: {remark}"));
         ran.notes.push(remark);
@@ -120,13 +127,15 @@ fn connected(
 fn ran(
     args: &TraceArgs,
     prepared: Prepared,
-    mut device: Option<ByEncoders<Device>>,
+    (mut device, seat): (Option<ByEncoders<Device>>, Option<&dyn Seat>),
     kept: &mut Records<'_>,
     task: Task<'_>,
 ) -> Result<(Prepared, Ran), Failure> {
-    let arms = device.as_ref().is_some_and(|device| device.rig().wants_a_person()) && !args.dry_run;
+    let wants_a_person = device.as_ref().is_some_and(|device| device.rig().wants_a_person());
+    // whoever sits elsewhere is asked whatever the head is: it is he who sees that nobody stands in the light
+    let arms = (wants_a_person || seat.is_some()) && !args.dry_run;
     let how = args.by_hand.attending(args.is_by_steps(), device.is_some());
-    let mut at_wall = AtWall::of(Attending { arms, ..how }, task, task.stop);
+    let mut at_wall = AtWall::of(Attending { arms, ..how }, seat, task, task.stop);
     at_wall.iter().for_each(|hands| hands.preflight(&prepared.preflight(&named::today())));
     let (head, mut nobody) = (device.as_mut().map_or(Head::Simulated, |device| Head::Given(device)), Nobody);
     let hands: &mut dyn Hands = at_wall.as_mut().map_or(&mut nobody, |hands| hands);

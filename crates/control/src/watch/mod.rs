@@ -153,18 +153,13 @@ impl Watch {
             .then(|| Finding::after(Fault::HostLost, silence, config.host_lost_ticks))
     }
 
-    /// What the commands of a tick show, V, if anything.
-    pub(crate) fn drive(
-        &mut self,
-        config: &Config,
-        servo: &Servo,
-        command_v: &PanTilt<f32>,
-    ) -> Option<Finding> {
+    /// What the volts of a tick show, if anything.
+    pub(crate) fn drive(&mut self, config: &Config, servo: &Servo) -> Option<Finding> {
         let faults = PanTilt::from_fn(|j| {
-            let axis = &config.axes[j];
-            let beyond_v = axis.beyond_v(command_v[j]);
-            let current = axis.current_share(beyond_v, servo.estimates()[j].velocity_rad_s);
-            self.motors[j].tick(&axis.rating, beyond_v / axis.limit_v, current).map(|found| found.by(j))
+            let (axis, beyond_v) = (&config.axes[j], servo.beyond_v()[j]);
+            let share = beyond_v / axis.limit_v;
+            let current = share - axis.back_emf_share(servo.estimates()[j].velocity_rad_s);
+            self.motors[j].tick(&axis.rating, share, current).map(|found| found.by(j))
         });
         faults.pan.or(faults.tilt)
     }

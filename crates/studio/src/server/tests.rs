@@ -9,7 +9,7 @@ use tracelight_task::{Progress, Stop};
 
 use super::*;
 use crate::folder::Folder;
-use crate::program::{Performed, Program};
+use crate::program::{Performed, Program, Seat};
 
 /// A program that notes what it is to do, plans two ticks, and traces until it is stopped or let go on.
 struct Noting {
@@ -22,11 +22,15 @@ impl Program for Noting {
         vec!["report".to_owned()]
     }
 
+    fn knows(&self, wish: &str) -> bool {
+        ["arm", "go-on", "pause", "pause-now", "stop", "disarm"].contains(&wish)
+    }
+
     fn perform(
         &self,
         arguments: &[String],
-        progress: &dyn Progress,
-        stop: &Stop,
+        seat: Option<&dyn Seat>,
+        (progress, stop): (&dyn Progress, &Stop),
     ) -> Result<Performed, Failure> {
         self.asked.send(arguments.to_vec()).unwrap();
         match arguments[0].as_str() {
@@ -42,6 +46,11 @@ impl Program for Noting {
             "trace" => loop {
                 progress.stage("run", 10);
                 stop.check()?;
+                if let Some(seat) = seat {
+                    while let Some(wish) = seat.wish() {
+                        seat.tell(&json!({ "event": "heard", "wish": wish }));
+                    }
+                }
                 if self.traced.lock().unwrap().try_recv().is_ok() {
                     return Ok(done(r#"{"tracking":{}}"#));
                 }
@@ -309,5 +318,69 @@ fn the_page_comes_zipped_once_and_may_load_nothing_of_others() {
         let (_, headers, _) =
             studio.send(ask("/api/v1/pictures/sign.svg", ("accept", "*/*".to_owned()))).await;
         assert!(headers["content-security-policy"].to_str().unwrap().contains("sandbox"));
+    });
+}
+
+#[test]
+fn the_page_that_began_a_job_asks_it_and_the_others_only_stop_it() {
+    run(async {
+        let studio = studio("attended");
+        let begin =
+            r#"{"picture":"star.png","page":"a","attended":true,"flags":{"frame":"box","dry_run":true}}"#;
+        let (status, _) = studio.post("/api/v1/jobs", r#"{"picture":"star.png","attended":true}"#).await;
+        assert_eq!(status, StatusCode::BAD_REQUEST, "nobody operates it");
+        let (status, _) =
+            studio.post("/api/v1/jobs", r#"{"picture":"star.png","flags":{"step":true}}"#).await;
+        assert_eq!(status, StatusCode::BAD_REQUEST, "nobody could ask for the next");
+        let (status, begun) = studio.post("/api/v1/jobs", begin).await;
+        assert!(status == StatusCode::ACCEPTED && begun["live"] == true, "{begun}");
+        let command = studio.asked.recv().unwrap();
+        for flag in ["--frame=box", "--dry-run", "--real-time=1"] {
+            assert!(command.iter().any(|argument| argument == flag), "{flag}: {command:?}");
+        }
+        let wish = |page: &str, wish: &str| format!(r#"{{"page":"{page}","wish":"{wish}"}}"#);
+        for (page, word, status, why) in [
+            ("a", "arm", 200, ""),
+            ("b", "arm", 400, "another page operates it"),
+            ("a", "light", 400, "nothing that a job can be asked"),
+            ("b", "stop", 200, ""),
+            ("b", "take", 200, ""),
+            ("a", "refuse", 200, ""),
+        ] {
+            let (found, told) = studio.post("/api/v1/jobs/current/wishes", wish(page, word)).await;
+            let message = told["error"]["message"].as_str().unwrap_or_default();
+            assert!(found.as_u16() == status && message.contains(why), "{page} {word}: {found} {told}");
+        }
+        assert_eq!(studio.post("/api/v1/jobs/current/wishes", "{").await.0, StatusCode::BAD_REQUEST);
+        // to stop it does not end it: it may go on
+        assert_eq!(studio.post("/api/v1/stop", "").await.1, json!({ "stopped": true }));
+        tokio::time::sleep(std::time::Duration::from_millis(20)).await;
+        assert_eq!(studio.job().await["over"], false);
+        studio.go_on.send(()).unwrap();
+        studio.until_over().await;
+        let (found, told) = studio.post("/api/v1/jobs/current/wishes", wish("a", "arm")).await;
+        assert!(found == StatusCode::BAD_REQUEST, "{told}");
+    });
+}
+
+#[test]
+fn a_socket_is_opened_by_pages_of_this_server_alone() {
+    run(async {
+        let studio = studio("socket");
+        for (origin, status) in [("http://evil.example", 403), ("http://127.0.0.1:9999", 403), ("null", 403)]
+        {
+            let upgrade = Request::get("/api/v1/live?page=a")
+                .header("host", "127.0.0.1:4460")
+                .header("connection", "upgrade")
+                .header("upgrade", "websocket")
+                .header("sec-websocket-version", "13")
+                .header("sec-websocket-key", "dGhlIHNhbXBsZSBub25jZQ==")
+                .header("origin", origin);
+            assert_eq!(
+                studio.send(upgrade.body(Body::empty()).unwrap()).await.0.as_u16(),
+                status,
+                "{origin}"
+            );
+        }
     });
 }

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use clap::Args;
-use tracelight_operator::Bar;
+use tracelight_operator::{Bar, Seat};
 use tracelight_task::{Failure, Stop, Task};
 
 /// What every command has.
@@ -45,8 +45,8 @@ impl Answer {
 /// Does what a command line says, in this process, and returns what would be printed.
 pub(crate) type Performs = fn(&[&str], &Stop) -> Result<Answer, Failure>;
 
-/// The same for somebody who shows by himself how far it is.
-pub(crate) type PerformsWith = fn(&[String], Task<'_>) -> Result<Answer, Failure>;
+/// The same for somebody who shows by himself how far it is, and may attend it.
+pub(crate) type PerformsWith = fn(&[String], Option<&dyn Seat>, Task<'_>) -> Result<Answer, Failure>;
 
 /// To standard output; a reader that has left is no error.
 ///

@@ -36,6 +36,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracelight_files as files;
+use tracelight_operator::Seat;
 use tracelight_task::{Failure, Status, Stop, Task};
 
 use self::answer::{Answer, Voice, print, watched};
@@ -122,7 +123,7 @@ fn offered(arguments: &[OsString]) -> Option<ExitCode> {
 
 fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
     match command {
-        Command::Trace(args) => (args.voice, watched(args.voice, stop, |task| trace::run(args, task))),
+        Command::Trace(args) => (args.voice, watched(args.voice, stop, |task| trace::run(args, None, task))),
         Command::Strokes(args) => (args.voice, strokes::run(args, stop)),
         Command::Plan(args) => (args.voice, watched(args.voice, stop, |task| plan::run(args, task))),
         Command::Point(args) => {
@@ -157,10 +158,10 @@ fn read(arguments: &[String]) -> Result<Command, clap::Error> {
 }
 
 /// Does what a command line says for somebody who shows its progress: commands that a page may need, with `--json`.
-fn done_for(arguments: &[String], task: Task<'_>) -> Result<Answer, Failure> {
+fn done_for(arguments: &[String], seat: Option<&dyn Seat>, task: Task<'_>) -> Result<Answer, Failure> {
     // what is said first is what is wrong; the rest is for a terminal
     match read(arguments).map_err(|e| failing::refused(&e))? {
-        Command::Trace(args) => trace::run(&args, task),
+        Command::Trace(args) => trace::run(&args, seat, task),
         Command::Plan(args) => plan::run(&args, task),
         Command::Runs(args) => runs::run(&args),
         Command::Explain(args) => explain::run(&args),

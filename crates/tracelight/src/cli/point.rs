@@ -78,5 +78,5 @@ pub(crate) fn run(
     (asked.dry_run, asked.voice) = (args.dry_run, args.voice);
     asked.out.clone_from(&args.out);
     asked.typed.clone_from(&args.typed);
-    trace::run(&asked, task)
+    trace::run(&asked, None, task)
 }

@@ -204,8 +204,8 @@ impl TraceArgs {
         Some(Points { kinds, mark, corner_rad, as_told: !self.at.is_empty() })
     }
 
-    /// Refuses to go from stroke to stroke where nobody can ask for the next.
-    pub(crate) fn check_keys(&self) -> Result<(), Failure> {
+    /// Refuses to go from stroke to stroke where nobody can ask for the next; who has a seat elsewhere can.
+    pub(crate) fn check_keys(&self, is_seated: bool) -> Result<(), Failure> {
         let by_keys = self.by_hand.each.is_none();
         let flags = [
             ("--step", self.step && by_keys),
@@ -223,7 +223,7 @@ impl TraceArgs {
             _ if self.by_hand.each.is_some() && !self.is_by_steps() => {
                 "--each is how long --step and --points stay on one: give one of them".to_owned()
             }
-            Some((flag, _)) if !std::io::stdin().is_terminal() => {
+            Some((flag, _)) if !is_seated && !std::io::stdin().is_terminal() => {
                 let each = if *flag == "--frame" { "" } else { ", or give --each TIME" };
                 format!(
                     "{flag} waits for keys, and standard input is no terminal: start it in one, without < or |{each}"

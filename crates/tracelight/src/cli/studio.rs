@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 use tracelight_files as files;
-use tracelight_operator::Bar;
+use tracelight_operator::{self as operator, Bar};
 use tracelight_sim::RigConfig;
-use tracelight_studio::{Performed, Program, open};
+use tracelight_studio::{Performed, Program, Seat, open};
 use tracelight_task::{Failure, Progress, Stop, Task};
 
 use crate::cli::answer::{Answer, PerformsWith, Voice};
@@ -40,6 +40,19 @@ pub(crate) struct StudioArgs {
     pub(crate) voice: Voice,
 }
 
+/// Somebody at a page who attends a job.
+struct Attended<'a>(&'a dyn Seat);
+
+impl operator::Seat for Attended<'_> {
+    fn wish(&self) -> Option<operator::Wish> {
+        self.0.wish().and_then(|word| operator::Wish::read(&word))
+    }
+
+    fn tell(&self, event: &Value) {
+        self.0.tell(event);
+    }
+}
+
 /// The commands that the page has done.
 struct Commands(PerformsWith);
 
@@ -48,13 +61,19 @@ impl Program for Commands {
         RigConfig::presets().into_iter().map(|preset| preset.name).collect()
     }
 
+    fn knows(&self, wish: &str) -> bool {
+        operator::Wish::read(wish).is_some()
+    }
+
     fn perform(
         &self,
         arguments: &[String],
-        progress: &dyn Progress,
-        stop: &Stop,
+        seat: Option<&dyn Seat>,
+        (progress, stop): (&dyn Progress, &Stop),
     ) -> Result<Performed, Failure> {
-        let Answer { json, failure, .. } = (self.0)(arguments, Task { progress, stop })?;
+        let attended = seat.map(Attended);
+        let seat = attended.as_ref().map(|attended| attended as &dyn operator::Seat);
+        let Answer { json, failure, .. } = (self.0)(arguments, seat, Task { progress, stop })?;
         Ok(Performed { json, failure })
     }
 }

@@ -1,11 +1,13 @@
+use tracelight_operator::Seat;
 use tracelight_task::{Failure, Task};
 
 use crate::cli::answer::Answer;
 use crate::cli::request::TraceArgs;
 use crate::job::{self, Outcome};
 
-pub(crate) fn run(args: &TraceArgs, task: Task<'_>) -> Result<Answer, Failure> {
-    answered(args, job::trace(args, task)?)
+/// Traces, attended by somebody elsewhere if he has a seat.
+pub(crate) fn run(args: &TraceArgs, seat: Option<&dyn Seat>, task: Task<'_>) -> Result<Answer, Failure> {
+    answered(args, job::trace(args, seat, task)?)
 }
 
 /// What a run that is over is answered with.

@@ -1,0 +1,288 @@
+// @ts-check
+/** Somebody attends a job: before light, arming, and what may be asked while it is drawn. */
+
+import * as api from './api.js'
+import { Hold } from './hold.js'
+import { Live } from './live.js'
+import { element, follow } from './runs.js'
+import { plain, time } from './words.js'
+
+/** What was told longer ago is not known any more, ms. */
+const STALE = 400
+/** States in which the job is on. */
+const ON = ['tracing', 'stepping', 'pointing', 'framing', 'returning', 'pausing']
+/** What states are called. @type {Record<string, string>} */
+const STATES = {
+  unhomed: 'It does not know where it points', ready: 'Ready, dark', parking: 'Goes to zero, dark', armed: 'Armed', framing: 'Shows the frame', tracing: 'Traces', stepping: 'Draws a stroke again and again',
+  pointing: 'Marks a point', returning: 'Dark, on its way back to the stroke', pausing: 'Pauses after this stroke', paused: 'Paused, dark', stopped: 'Stopped, dark', done: 'Done, dark', fault: 'A fault: dark', lost: 'The head is gone',
+}
+
+/**
+ * @typedef {{ asked: () => { picture: string, flags: api.Flags }, at: (share: number) => void, stroke: (number: number) => void, mark: (at: [number, number] | null) => void, ended: (job: api.Job) => void, problem: (error: unknown) => void, lamp: (text: string, lit: boolean) => void }} Hooks
+ *   what is shown; how far of the plan it is, 0 to 1, −1 for nowhere; the stroke that is drawn again and again; the place that is marked; how it ended
+ */
+
+/** @template {HTMLElement} T @param {string} id @returns {T} */
+const by = (id) => /** @type {T} */ (document.getElementById(id))
+
+/** What is typed or chosen in a field. @param {string} id */
+const field = (id) => /** @type {HTMLInputElement} */ (by(id))
+
+export class Run {
+  /** @param {string} page @param {Hooks} hooks */
+  constructor(page, hooks) {
+    this.page = page
+    this.hooks = hooks
+    this.on = false
+    this.mine = false
+    this.mode = 'trace'
+    this.framing = false
+    this.state = ''
+    /** @type {import('./live.js').Told | null} the point that is marked */
+    this.point = null
+    /** When it was last told how far it is, ms. */
+    this.heard = 0
+    /** @type {import('./live.js').Told} */
+    this.now = { event: 'progress' }
+    this.live = new Live(page, (told) => this.#hear(told), (open) => this.#opened(open))
+    this.arm = new Hold(by('arm'), () => this.#ask('arm'))
+    by('begin').addEventListener('click', () => this.begin())
+    by('go').addEventListener('click', () => this.#ask(this.framing ? 'next' : 'go-on'))
+    by('pause').addEventListener('click', () => this.#ask('pause'))
+    by('pause-now').addEventListener('click', () => this.#ask('pause-now'))
+    by('next').addEventListener('click', () => this.#ask('next'))
+    by('previous').addEventListener('click', () => this.#ask('previous'))
+    by('skip').addEventListener('click', () => this.#ask('skip'))
+    by('clear').addEventListener('click', () => this.#ask('clear'))
+    by('end').addEventListener('click', () => this.#ask('end'))
+    by('take').addEventListener('click', () => this.#ask('take'))
+    by('refuse').addEventListener('click', () => this.#refuse())
+    by('faster').addEventListener('change', () => this.#ask(`speed=${Number(field('faster').value) / 100}`))
+    by('faster').addEventListener('input', () => (by('percent').textContent = `${field('faster').value} %`))
+    for (const radio of document.querySelectorAll('input[name=mode]')) radio.addEventListener('change', () => this.#modes())
+    setInterval(() => this.#stale(), 100)
+    this.#modes()
+  }
+
+  /** The job to begin: its picture, and flags. */
+  #flags() {
+    const { picture, flags } = this.hooks.asked()
+    const asked = { ...flags }
+    const mode = this.#mode()
+    if (field('dry').checked) asked.dry_run = true
+    const times = field('times').value
+    if (times !== '1') asked.real_time = times
+    if (field('frame').value !== '') asked.frame = field('frame').value
+    if (mode === 'step') asked.step = true
+    if (mode === 'points') asked.points = 'all'
+    if (mode !== 'trace' && field('pace').value.trim() !== '') asked.pace = field('pace').value.trim()
+    return { picture, flags: asked }
+  }
+
+  #mode() {
+    return /** @type {HTMLInputElement | null} */ (document.querySelector('input[name=mode]:checked'))?.value ?? 'trace'
+  }
+
+  #modes() {
+    by('pace-row').hidden = this.#mode() === 'trace'
+  }
+
+  /** Begins a job, dark: it waits until somebody arms it. */
+  async begin() {
+    if (this.on) return
+    this.hooks.problem(null)
+    by('attended').hidden = true
+    try {
+      this.mode = this.#mode()
+      this.#say('')
+      by('checks').replaceChildren()
+      this.mine = this.live.operates = true
+      this.live.open()
+      await api.attend({ page: this.page, ...this.#flags() })
+      this.#show()
+      await this.followed()
+    } catch (error) {
+      this.mine = this.live.operates = false
+      this.hooks.problem(error)
+      this.#show()
+    }
+  }
+
+  /** Follows the job that is on to its end; one that another page began too. */
+  async followed() {
+    this.live.open()
+    const ended = await follow(() => {})
+    this.on = this.mine = this.live.operates = this.framing = false
+    this.state = ''
+    this.live.close()
+    this.#show()
+    this.hooks.lamp('● Dark', false)
+    this.hooks.at(-1)
+    this.hooks.mark(null)
+    this.point = null
+    if (ended) this.hooks.ended(ended)
+  }
+
+  /** Stops it: anybody may. */
+  stop() {
+    this.arm.cancel()
+    this.live.wish('stop')
+  }
+
+  /** What a key asks for while a job is on. @param {KeyboardEvent} event @returns {boolean} whether it asked for something */
+  key(event) {
+    if (event.key.toLowerCase() === 'a' && !event.repeat && this.on) {
+      this.arm.begin()
+      return true
+    }
+    if (!this.on || !this.mine) return false
+    const steps = this.state === 'stepping' || this.state === 'pointing'
+    if (event.key === ' ') {
+      if (steps) this.#ask('next')
+      else if (ON.includes(this.state)) this.#ask('pause')
+      else if (this.state === 'paused') this.#ask('go-on')
+      return true
+    }
+    const wish = { '.': 'next', PageDown: 'next', ',': 'previous', PageUp: 'previous' }[event.key]
+    if (wish && this.mode !== 'trace') this.#ask(wish)
+    return wish !== undefined
+  }
+
+  /** A key that was held is let go. */
+  released() {
+    this.arm.cancel()
+  }
+
+  /** @param {string} wish */
+  #ask(wish) {
+    if (!this.live.wish(wish)) this.hooks.problem(new api.Refusal({ code: 'gone', message: 'There is no line to the job: it is dark by itself within two seconds.' }, 0))
+  }
+
+  #refuse() {
+    by('asks').hidden = true
+    this.#ask('refuse')
+  }
+
+  /** @param {boolean} open */
+  #opened(open) {
+    if (!open) this.heard = 0
+  }
+
+  /** @param {import('./live.js').Told} told */
+  #hear(told) {
+    if (told.event === 'live' || told.event === 'begun' || told.event === 'operator') {
+      const operator = told.operator ?? told.page
+      this.on = told.event !== 'live' || told.on
+      this.mine = this.live.operates = this.on && operator === this.page
+      by('asks').hidden = true
+    } else if (told.event === 'progress') {
+      this.now = told
+      this.heard = performance.now()
+      this.state = told.state
+      this.#place()
+    } else if (told.event === 'preflight') {
+      by('checks').replaceChildren(...told.checks.map(check))
+    } else if (told.event === 'frame') {
+      this.framing = told.on
+    } else if (told.event === 'asks') {
+      by('asks').hidden = !this.mine
+    } else if (told.event === 'refuses' && told.page === this.page) {
+      this.#say('The page that operates it keeps it.')
+    } else if (told.event === 'refused') {
+      this.#say(told.message)
+    } else if (told.event === 'fault') {
+      this.#say(`${told.code}: ${told.message}`)
+    } else if (told.event === 'lost') {
+      this.#say(told.dark ? 'The page that operates it is not heard: dark.' : 'The page that operates it is not heard: it pauses.')
+    } else if (told.event === 'point') {
+      this.point = told
+      this.hooks.mark([told.x_mm / 1000, told.y_mm / 1000])
+    } else if (told.event === 'state') {
+      this.state = told.to
+      // the tick that came to rest had its gate shut
+      if (!ON.includes(told.to)) this.now = { ...this.now, gate: false }
+      // what was wrong before is over
+      if (ON.includes(told.to) || told.to === 'armed') this.#say('')
+    }
+    this.#show()
+  }
+
+  /** Shows on the wall how far it is. */
+  #place() {
+    const { now } = this
+    if (this.framing || !(now.of_s > 0)) this.hooks.at(-1)
+    else if (this.mode === 'trace') this.hooks.at(now.plan_s / now.of_s)
+    else if (this.mode === 'step' && now.stroke) this.hooks.stroke(now.stroke)
+    else this.hooks.at(-1)
+  }
+
+  /** @param {string} text */
+  #say(text) {
+    by('said').textContent = text
+    by('said').hidden = text === ''
+  }
+
+  /** What was told long ago says nothing of now. */
+  #stale() {
+    if (this.on && performance.now() - this.heard > STALE) this.hooks.lamp('? Unknown', false)
+  }
+
+  /** Where it is, in words. */
+  #where() {
+    const { now, point } = this
+    if (this.framing) return 'The frame, again and again'
+    if (this.mode === 'points') return point ? `${point.kind} ${point.point} of ${point.points} · ${plain(point.x_mm, 0)}, ${plain(point.y_mm, 0)} mm` : ''
+    const stroke = now.strokes > 0 && now.stroke ? `stroke ${now.stroke} of ${now.strokes}` : ''
+    const at = now.of_s > 0 && this.mode === 'trace' ? `${time(now.plan_s)} of ${time(now.of_s)}` : ''
+    return [stroke, at].filter(Boolean).join(' · ')
+  }
+
+  #show() {
+    const { state, now, on, mine } = this
+    const is_on = ON.includes(state)
+    const armed = state === 'armed'
+    const lit = on && now.gate === true
+    by('before').hidden = on
+    by('during').hidden = !on
+    if (!on) return
+    const left = armed ? ` ${Math.ceil(now.armed_s ?? 0)} s` : ''
+    this.hooks.lamp(lit ? '☀ Light' : armed ? `◔ Armed${left}` : '● Dark', lit)
+    by('state').textContent = state === 'tracing' && !lit ? 'Traces: a dark move' : (STATES[state] ?? 'Begins')
+    by('where').textContent = this.#where()
+    const can_arm = ['ready', 'stopped', 'unhomed', 'done'].includes(state) || (state === 'paused')
+    const goes = armed || state === 'paused' || this.framing
+    enable('arm', mine && can_arm)
+    by('arm').classList.toggle('is', armed)
+    by('arm').textContent = armed ? `◔ Armed${left}` : 'Hold to arm'
+    enable('go', mine && goes)
+    by('go').textContent = this.framing && !armed ? '▶ Draw it now' : armed && now.plan_s === 0 && this.mode === 'trace' && !this.framing ? '▶ Trace' : '▶ Go on'
+    enable('pause', mine && is_on && state !== 'pausing')
+    enable('pause-now', mine && is_on)
+    for (const id of ['next', 'previous', 'skip']) {
+      by(id).hidden = this.mode === 'trace'
+      enable(id, mine && (is_on || state === 'paused'))
+    }
+    by('clear').hidden = state !== 'fault'
+    enable('clear', mine)
+    enable('end', mine)
+    enable('faster', mine)
+    if (document.activeElement !== by('faster') && now.speed) {
+      field('faster').value = String(Math.round(100 * now.speed))
+      by('percent').textContent = `${plain(100 * now.speed, 0)} %`
+    }
+    by('viewer').hidden = mine
+  }
+}
+
+/** @param {string} id @param {boolean} can */
+function enable(id, can) {
+  // keys that are pressed after it are not its own any more
+  if (!can && document.activeElement === by(id)) by(id).blur()
+  by(id).toggleAttribute('disabled', !can)
+}
+
+/** A line of what was looked at before light. @param {{ name: string, verdict: string, words: string }} of */
+function check(of) {
+  const mark = { passed: '✓', warned: '⚠', refused: '✕' }[of.verdict] ?? '?'
+  return element('li', { class: of.verdict }, element('span', { class: 'mark', text: mark, 'aria-label': of.verdict }), element('span', { text: of.words }))
+}

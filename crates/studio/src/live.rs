@@ -1,0 +1,278 @@
+//! A job that people attend from pages: one of them operates it, the others look on, and anybody stops it.
+//!
+//! ```text
+//! page ─ wish, "here" ─► Live ─► the job, tick by tick        job ─ events, progress ─► Live ─► every page
+//! ```
+//!
+//! The operator's page says all the time that it is there. One that is silent for [`PAUSED`] pauses the job at its stroke's end, after [`DARK`] it is dark at once: whoever operates it is lost.
+
+use std::collections::VecDeque;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+use tokio::sync::broadcast;
+
+use crate::program::Seat;
+
+/// How long the operator's page may be silent before the job pauses, and before it is dark.
+const PAUSED: Duration = Duration::from_millis(1200);
+const DARK: Duration = Duration::from_millis(1800);
+/// How long an operator has to refuse another one.
+const ASKED: Duration = Duration::from_secs(5);
+/// Events that a page may be behind; one that reads no more loses the oldest.
+const MOST_BEHIND: usize = 512;
+/// Wishes that wait for a tick.
+const MOST_WISHES: usize = 64;
+/// Events that a page is told that comes later: what a job said of itself before its first tick.
+const MOST_EARLIER: usize = 64;
+/// What stops a job, whoever says it.
+const STOP: &str = "stop";
+
+/// What pages and a job say to each other.
+#[derive(Debug)]
+pub(crate) struct Live {
+    told: broadcast::Sender<String>,
+    state: Mutex<State>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    /// Whether a job may be asked anything.
+    is_on: bool,
+    wishes: VecDeque<String>,
+    operator: Option<Operator>,
+    /// Another page that wants to operate it, and since when.
+    wants: Option<(String, Instant)>,
+    /// What a page is told first that comes in the middle.
+    earlier: Vec<String>,
+    progress: Option<String>,
+}
+
+#[derive(Debug)]
+struct Operator {
+    page: String,
+    heard: Instant,
+    /// What its silence has brought about already.
+    lost: Lost,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
+enum Lost {
+    There,
+    Paused,
+    Dark,
+}
+
+impl Live {
+    pub(crate) fn new() -> Self {
+        Self { told: broadcast::channel(MOST_BEHIND).0, state: Mutex::default() }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn say(&self, event: &Value) {
+        // nobody may be there
+        let _ = self.told.send(event.to_string());
+    }
+
+    /// A job begins, which that page operates.
+    pub(crate) fn begin(&self, page: &str) {
+        let operator = Operator { page: page.to_owned(), heard: Instant::now(), lost: Lost::There };
+        *self.state() = State { is_on: true, operator: Some(operator), ..State::default() };
+        self.say(&json!({ "event": "begun", "operator": page }));
+    }
+
+    /// The job is over: nothing is asked of it any more.
+    pub(crate) fn end(&self) {
+        *self.state() = State::default();
+        self.say(&json!({ "event": "over" }));
+    }
+
+    pub(crate) fn is_on(&self) -> bool {
+        self.state().is_on
+    }
+
+    /// Stops the job, before whatever else was asked; whether there was one.
+    pub(crate) fn stop(&self) -> bool {
+        let mut state = self.state();
+        if state.is_on {
+            state.wishes.clear();
+            state.wishes.push_back(STOP.to_owned());
+        }
+        state.is_on
+    }
+
+    /// A page's line: what it is told first, and then whatever happens.
+    pub(crate) fn join(&self) -> (Vec<String>, broadcast::Receiver<String>) {
+        let state = self.state();
+        let operator = state.operator.as_ref().map(|operator| &operator.page);
+        let first = json!({ "event": "live", "on": state.is_on, "operator": operator }).to_string();
+        let all = std::iter::once(first).chain(state.earlier.iter().cloned()).chain(state.progress.clone());
+        (all.collect(), self.told.subscribe())
+    }
+
+    /// What a page asks. Whoever does not operate the job may stop it, and ask to operate it.
+    ///
+    /// # Errors
+    /// Why that is refused, for who asked.
+    pub(crate) fn ask(&self, page: &str, wish: &str) -> Result<(), String> {
+        if wish == STOP {
+            return if self.stop() { Ok(()) } else { Err("nothing is traced".to_owned()) };
+        }
+        let mut state = self.state();
+        if !state.is_on {
+            return Err("nothing is traced".to_owned());
+        }
+        let operates = state.operator.as_ref().is_some_and(|operator| operator.page == page);
+        match (wish, operates) {
+            ("take", true) => {}
+            ("take", false) => {
+                state.wants = Some((page.to_owned(), Instant::now()));
+                drop(state);
+                self.say(&json!({ "event": "asks", "page": page }));
+            }
+            ("refuse", true) => {
+                let refused = state.wants.take();
+                drop(state);
+                if let Some((page, _)) = refused {
+                    self.say(&json!({ "event": "refuses", "page": page }));
+                }
+            }
+            (_, false) => return Err("another page operates it: take it over first".to_owned()),
+            _ if state.wishes.len() >= MOST_WISHES => return Err("too much is asked at once".to_owned()),
+            _ => state.wishes.push_back(wish.to_owned()),
+        }
+        Ok(())
+    }
+
+    /// A page is there.
+    pub(crate) fn hear(&self, page: &str) {
+        let mut state = self.state();
+        if let Some(operator) = state.operator.as_mut().filter(|operator| operator.page == page) {
+            (operator.heard, operator.lost) = (Instant::now(), Lost::There);
+        }
+    }
+
+    /// Looks whether the operator is still there, and whether another one becomes it.
+    pub(crate) fn look(&self) {
+        let mut state = self.state();
+        let State { operator, wants, wishes, is_on, .. } = &mut *state;
+        let Some(operator) = operator.as_mut().filter(|_| *is_on) else { return };
+        let silent = operator.heard.elapsed();
+        if silent >= DARK && operator.lost < Lost::Dark {
+            operator.lost = Lost::Dark;
+            wishes.push_front("pause-now".to_owned());
+            self.say(&json!({ "event": "lost", "dark": true }));
+        } else if silent >= PAUSED && operator.lost < Lost::Paused {
+            operator.lost = Lost::Paused;
+            wishes.push_back("pause".to_owned());
+            self.say(&json!({ "event": "lost", "dark": false }));
+        }
+        let is_granted = |since: &Instant| since.elapsed() >= ASKED || operator.lost > Lost::There;
+        if let Some((page, _)) = wants.take_if(|(_, since)| is_granted(since)) {
+            // it passes dark, and not armed
+            wishes.extend(["pause-now".to_owned(), "disarm".to_owned()]);
+            *operator = Operator { page: page.clone(), heard: Instant::now(), lost: Lost::There };
+            self.say(&json!({ "event": "operator", "page": page }));
+        }
+    }
+}
+
+impl Seat for Live {
+    fn wish(&self) -> Option<String> {
+        self.state().wishes.pop_front()
+    }
+
+    fn tell(&self, event: &Value) {
+        let text = event.to_string();
+        let mut state = self.state();
+        if event["event"] == "progress" {
+            state.progress = Some(text.clone());
+        } else if state.earlier.len() < MOST_EARLIER {
+            state.earlier.push(text.clone());
+        }
+        drop(state);
+        let _ = self.told.send(text);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wishes(live: &Live) -> Vec<String> {
+        std::iter::from_fn(|| live.wish()).collect()
+    }
+
+    #[test]
+    fn one_page_operates_and_anybody_stops() {
+        let live = Live::new();
+        assert!(live.ask("a", "arm").is_err() && live.ask("a", "stop").is_err() && !live.stop());
+        live.begin("a");
+        assert!(live.ask("a", "arm").is_ok());
+        assert!(live.ask("b", "go-on").unwrap_err().contains("another page operates it"));
+        assert!(live.ask("b", "stop").is_ok());
+        // what was asked before is not wanted any more
+        assert_eq!(wishes(&live), ["stop"]);
+        live.end();
+        assert!(live.ask("a", "arm").is_err());
+    }
+
+    #[test]
+    fn an_operator_that_is_silent_pauses_and_then_darkens_once() {
+        let live = Live::new();
+        live.begin("a");
+        live.look();
+        assert!(wishes(&live).is_empty());
+        let silent = |for_how_long: Duration| {
+            live.state().operator.as_mut().unwrap().heard = Instant::now() - for_how_long;
+            live.look();
+            wishes(&live)
+        };
+        assert_eq!(silent(PAUSED), ["pause"]);
+        assert!(silent(PAUSED).is_empty());
+        assert_eq!(silent(DARK), ["pause-now"]);
+        assert!(silent(3 * DARK).is_empty());
+        live.hear("b");
+        assert!(silent(3 * DARK).is_empty(), "another page is not the operator");
+        live.hear("a");
+        live.look();
+        assert_eq!(silent(DARK), ["pause-now"]);
+    }
+
+    #[test]
+    fn who_takes_it_over_waits_unless_the_operator_is_lost_and_gets_it_dark() {
+        let live = Live::new();
+        live.begin("a");
+        live.ask("b", "take").unwrap();
+        live.look();
+        assert!(live.ask("b", "arm").is_err());
+        live.ask("a", "refuse").unwrap();
+        let waited = live.state().wants.take().map(|(page, _)| (page, Instant::now() - ASKED));
+        live.state().wants = waited;
+        live.look();
+        assert!(wishes(&live).is_empty() && live.ask("b", "arm").is_err(), "it was refused");
+        live.ask("b", "take").unwrap();
+        let waited = live.state().wants.take().map(|(page, _)| (page, Instant::now() - ASKED));
+        live.state().wants = waited;
+        live.look();
+        assert_eq!(wishes(&live), ["pause-now", "disarm"]);
+        assert!(live.ask("b", "arm").is_ok() && live.ask("a", "arm").is_err());
+    }
+
+    #[test]
+    fn a_page_that_comes_later_is_told_what_was_said_before() {
+        let live = Live::new();
+        live.begin("a");
+        live.tell(&json!({ "event": "preflight" }));
+        for n in 0..3 {
+            live.tell(&json!({ "event": "progress", "n": n }));
+        }
+        let (first, _) = live.join();
+        assert_eq!(first.len(), 3);
+        assert!(first[0].contains("\"operator\":\"a\"") && first[2].contains("\"n\":2"), "{first:?}");
+    }
+}
