@@ -105,7 +105,7 @@ enum Role {
 /// What visitors want.
 #[derive(Debug, Default)]
 pub(crate) struct Wanted {
-    /// That it is disarmed.
+    /// Whether it is to be disarmed.
     pub(crate) disarm: bool,
     /// Bytes of who drives, for the board.
     pub(crate) bytes: Vec<u8>,

@@ -177,7 +177,7 @@ mod tests {
         let none = parse("my.toml", "base = \"brand-new\"\n").unwrap_err();
         assert!(
             none.contains("my.toml:1:8")
-                && none.contains("one of the presets report, report-b, worn, stepper, servo"),
+                && none.contains("one of the presets report, report-b, worn, bridge, stepper, servo"),
             "{none}"
         );
         assert!(parse("my.toml", "base = 3\n").unwrap_err().contains("base must be text"));

@@ -21,7 +21,7 @@ const LOOK: Duration = Duration::from_millis(50);
 struct Said {
     /// What it asks of the job.
     wish: Option<String>,
-    /// That it is there.
+    /// Whether it says that it is there.
     #[serde(default)]
     here: bool,
 }

@@ -57,14 +57,16 @@ pub(crate) fn stop(args: &StopArgs) -> Result<Answer, Failure> {
 }
 
 pub(crate) fn run_watch(args: &WatchArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let (mut failure, mut before) = (Ok(()), Value::Null);
+    let (mut failure, mut before, mut lines) = (Ok(()), Value::Null, 0_u32);
     let show = |seen: &Value| {
         let text = if args.voice.json { seen.to_string() } else { seen_text(&before, seen) };
-        before = seen.clone();
+        (before, lines) = (seen.clone(), lines + 1);
         failure = print(&text);
         if failure.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let port = port(args.port.as_ref());
     watched(args.voice, stop, |task| watch(port.as_deref(), args.lasts_s, show, task))?;
-    failure.map(|()| Answer::new("", ""))
+    failure?;
+    let text = if lines == 0 { "nobody drove a head meanwhile" } else { "over" };
+    Ok(Answer::new(text, json!({ "over": true, "lines": lines }).to_string()))
 }

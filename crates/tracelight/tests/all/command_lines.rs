@@ -174,11 +174,11 @@ fn wrong_flags_and_names_are_answered_with_what_to_type() {
         (&["plan", "examples/star.png", "--text", "hello"], &["Either a picture, or the words of --text"]),
         (
             &["plan", "examples/star.png", "--rig", "reprot"],
-            &["no preset (report, report-b, worn, stepper, servo)", "did you mean report?"],
+            &["no preset (report, report-b, worn, bridge, stepper, servo)", "did you mean report?"],
         ),
         (
             &["plan", "examples/star.png", "--rig", "banana"],
-            &["no preset (report, report-b, worn, stepper, servo) and no rig file"],
+            &["no preset (report, report-b, worn, bridge, stepper, servo) and no rig file"],
         ),
         (&["plan", "examples/star.png", "--rig", "/dev/ttyUSB0"], &["this command drives no head"]),
         (&["plan", "examples/star.png", "--rig", "COM3"], &["this command drives no head"]),

@@ -52,7 +52,8 @@ fn a_rig_file_with_a_base_needs_only_what_differs() {
     let (code, said) = planned(&dir, "none.toml", &text.replace("worn", "old"), &[]);
     assert!(
         code == Some(2)
-            && said.contains("base: must be one of the presets report, report-b, worn, stepper, servo"),
+            && said
+                .contains("base: must be one of the presets report, report-b, worn, bridge, stepper, servo"),
         "{said}"
     );
 }

@@ -118,7 +118,7 @@ const RIGS: &[Row] = &[
     (
         "plan examples/star.png --rig banana",
         2,
-        &["no preset (report, report-b, worn, stepper, servo) and no rig file"],
+        &["no preset (report, report-b, worn, bridge, stepper, servo) and no rig file"],
     ),
     ("plan examples/star.png --rig /dev/ttyUSB0", 2, &["this command drives no head"]),
     ("plan examples/star.png --rig COM3", 2, &["this command drives no head"]),
@@ -129,7 +129,7 @@ const RIGS: &[Row] = &[
     ("plan examples/star.png --rig @/table.toml", 2, &["[model] has axis_skew, ", "pan, relay, tilt"]),
     ("plan examples/star.png --rig @/value.toml", 2, &["must be one of state, pid-ff", "^^^^^^^\n(see"]),
     ("plan examples/star.png --rig @/unit.toml", 2, &["3 has no unit", "s, ms, min"]),
-    ("plan examples/star.png --rig @/base.toml", 2, &["report, report-b, worn, stepper, servo"]),
+    ("plan examples/star.png --rig @/base.toml", 2, &["report, report-b, worn, bridge, stepper, servo"]),
 ];
 
 const FILES: &[Row] = &[
