@@ -166,9 +166,9 @@ const lost = async () => {
   await until(other, 'another page does not show the run', () => location.hash === '#run' && document.body.classList.contains('lit'))
   const began = Date.now()
   await page.context().close()
-  await until(other, 'a lost operator leaves it lit', () => /Paused, dark/.test(document.getElementById('state').textContent))
+  await until(other, 'a lost operator leaves it lit', () => /Stopped, dark/.test(document.getElementById('state').textContent))
   const took = Date.now() - began
-  check(took <= 2200, `a lost operator leaves it lit for ${took} ms`)
+  check(took <= 2300, `a lost operator leaves it lit for ${took} ms`)
   await other.click('#take')
   await until(other, 'nobody may take over', () => document.getElementById('viewer').hidden)
   await ended(other)

@@ -58,7 +58,8 @@ impl AxisConfig {
 
     /// Voltage of the turning motor at a speed, as a share of the amplifier's limit.
     pub(crate) fn back_emf_share(&self, rate_rad_s: f32) -> f32 {
-        if self.back_emf_v_s_per_rad == 0.0 {
+        // a speed that is no number is told as such elsewhere, and must not become the heat of a motor
+        if self.back_emf_v_s_per_rad == 0.0 || !rate_rad_s.is_finite() {
             return 0.0;
         }
         self.back_emf_v_s_per_rad * rate_rad_s / self.limit_v

@@ -67,7 +67,13 @@ impl Experiment for Request {
             if self.logs.is_empty() { (self.tried(), Vec::new()) } else { self.logged()? };
         let left_out = PanTilt::from_fn(|joint| limited(&mut readings[joint]));
         let tell = |joint: Joint, points: &[CurrentPoint]| {
-            amplifier(points).ok_or_else(|| {
+            // of what lies within the dead band nothing comes, whatever the gain
+            let motor = &self.rig.model.motors[joint];
+            let beyond =
+                points.iter().map(|point| CurrentPoint { volts: motor.beyond_v(point.volts), ..*point });
+            let points: Vec<CurrentPoint> =
+                beyond.filter(|point| motor.dead_band_v == 0.0 || point.volts != 0.0).collect();
+            amplifier(&points).ok_or_else(|| {
                 let count = points.len();
                 let message = format!(
                     "{joint}: {count} readings tell no amplifier; give three at least, at different volts"

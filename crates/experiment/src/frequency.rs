@@ -110,6 +110,15 @@ impl Request {
         let joint = self.joint;
         let motor = rig.model.motors[joint];
         let bias_v = motor.volts_for(rig.model.felt_friction(joint).torque(self.speed_rad_s));
+        if motor.dead_band_v > 0.0 && bias_v.abs() - self.amplitude_v <= motor.dead_band_v {
+            let message = format!(
+                "{} V of sines about {:.2} V come into the dead band of {joint}'s amplifier, {} V: give smaller ones, or a higher --speed",
+                self.amplitude_v,
+                bias_v.abs(),
+                motor.dead_band_v
+            );
+            return Err(Failure::usage("usage", message));
+        }
         if bias_v.abs() + self.amplitude_v > motor.limit_v {
             let message = format!(
                 "{:.2} V to turn with {} rad/s and {} V of sines are more than the {} V of the amplifier",

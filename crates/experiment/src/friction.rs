@@ -85,7 +85,7 @@ fn found(subject: Subject, holds: bool) -> Result<Found, Failure> {
         return Ok(Found { steady, curves: None, subject, replayed: None });
     }
     let held = if holds { trials.as_slice() } else { &[] };
-    let steady = steady(held, believed.torque_nm_per_v, believed.count_rad);
+    let steady = steady(held, |volts| believed.torque_nm(volts), believed.count_rad);
     let curves = subject.curves()?;
     let replayed = subject.replayed(&curves);
     Ok(Found { steady, curves: Some(curves), subject, replayed })
@@ -139,7 +139,10 @@ impl Found {
     /// Puts it into a model. Friction that comes out below nothing is nothing.
     fn tell(&self, rig: &mut RigConfig) {
         let joint = self.subject.joint;
-        let mut friction = rig.model.friction_at_amplifier(joint);
+        // torques that were measured are the motor's own; volts have its own voltage in what they tell
+        let by_volts =
+            !self.subject.trials.is_empty() || self.steady.points.iter().any(|point| point.volts.is_some());
+        let mut friction = if by_volts { rig.model.felt_friction(joint) } else { rig.model.friction[joint] };
         let [pos, neg] = self.sides();
         if let Some(pos) = pos {
             (friction.viscous_pos, friction.coulomb_pos_nm) =
@@ -149,6 +152,10 @@ impl Found {
             (friction.viscous_neg, friction.coulomb_neg_nm) =
                 (neg.viscous.value.max(0.0), neg.coulomb_nm.value.min(0.0));
         }
-        rig.model.set_friction_at_amplifier(joint, friction);
+        if by_volts {
+            rig.model.set_felt_friction(joint, friction);
+        } else {
+            rig.model.friction[joint] = friction;
+        }
     }
 }

@@ -100,10 +100,11 @@ impl Request {
             limit_v: motor.limit_v,
             count_rad,
         };
-        if level_v <= motor.dead_band_v {
+        if level_v - relay.hold_v.abs() <= motor.dead_band_v {
             let message = format!(
-                "--level {level_v} V is within the dead band of {joint}'s amplifier, {} V",
-                motor.dead_band_v
+                "--level {level_v} V is within the dead band of {joint}'s amplifier, {} V, once {:.2} V of it hold the joint: nothing would come of it",
+                motor.dead_band_v,
+                relay.hold_v.abs()
             );
             return Err(Failure::usage("usage", message));
         }

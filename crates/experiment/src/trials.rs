@@ -164,6 +164,7 @@ impl Trials {
         let falls = joint == Joint::Tilt && !self.fixture;
         let believed = Believed {
             torque_nm_per_v: rig.model.motors[joint].torque_nm_per_v,
+            dead_band_v: rig.model.motors[joint].dead_band_v,
             count_rad: rig.model.encoder.count_rad(),
             step_rad: rig.model.encoder.count_rad(),
             inertia_kg_m2: rig.model.own_inertia_kg_m2()[joint],

@@ -70,10 +70,9 @@ impl Demand {
             for joint in Joint::BOTH {
                 let truth = &mut head.truth.model.motors[joint];
                 truth.torque_nm_per_v *= factor;
-                for v in [&mut truth.limit_v, &mut truth.dead_band_v, &mut truth.back_emf_v_s_per_rad] {
-                    *v /= factor;
-                }
-                head.model.motors[joint].limit_v = truth.limit_v;
+                truth.limit_v /= factor;
+                truth.back_emf_v_s_per_rad /= factor;
+                head.model.motors[joint].limit_v /= factor;
             }
             head.truth.wear.current_lag_s += lag_s;
             head

@@ -231,9 +231,11 @@ impl Plant {
         self.gains[joint].weaken(weakening);
     }
 
-    /// What the motors make at the joints now, N m; what their own voltages take from it acts as friction does.
-    pub const fn motor_nm(&self) -> PanTilt<f64> {
-        self.current_nm
+    /// What the motors' currents make at the joints now, N m.
+    pub fn motor_nm(&self) -> PanTilt<f64> {
+        // what their own voltages take from the torque is stepped as friction is
+        let own = |j: Joint| self.motors[j].back_emf_nm_s_per_rad() * self.state.rate_rad_s[j];
+        PanTilt::from_fn(|j| self.current_nm[j] - own(j))
     }
 
     /// Somebody leans on the head: torque at the joints from now on, N m.

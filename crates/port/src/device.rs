@@ -5,14 +5,14 @@ use std::time::{Duration, Instant};
 
 use tracelight_device::{Host, Stage, Twin};
 use tracelight_rig::wire::Greeting;
-use tracelight_rig::{Command, Rig, TICK_F64_S, Telemetry};
+use tracelight_rig::{Command, Darkness, Rig, TICK_F64_S, Telemetry};
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::port::Port;
 use crate::seen::Seen;
 use crate::session::{micros, new_session};
-use crate::shared::Shared;
+use crate::shared::{Shared, stopped};
 
 /// For how long it waits for bytes before it looks what else is to be done.
 const WAIT: Duration = Duration::from_millis(1);
@@ -25,6 +25,8 @@ const LOOK_AGAIN: Duration = Duration::from_millis(100);
 #[derive(Debug)]
 pub struct Device {
     host: Host,
+    /// Those who watch it, and may disarm it; none where no socket could be made. Given up before the port is.
+    shared: Option<Shared>,
     port: Option<Port>,
     path: PathBuf,
     began: Instant,
@@ -32,8 +34,11 @@ pub struct Device {
     broke: Option<Instant>,
     /// Whoever waits for a cable need not.
     stop: Stop,
-    /// Those who watch it, and may disarm it; none where no socket could be made.
-    shared: Option<Shared>,
+    /// Why it is to stay dark: somebody else stopped it.
+    stopped: Option<Failure>,
+    /// Its last tick that was told had the board disarmed and its gate shut.
+    is_dark: bool,
+    remarks: Vec<String>,
 }
 
 impl Device {
@@ -51,10 +56,11 @@ impl Device {
         let port = Some(Port::open(path)?);
         let host = Host::new(config.control_config(), new_session());
         let (began, stop) = (Instant::now(), stop.clone());
-        // whoever drives through another program's port is seen there
-        let is_own = port.as_ref().is_some_and(Port::is_own);
-        let shared = is_own.then(|| Shared::new(path, false).ok()).flatten();
-        let mut device = Self { host, port, path: path.to_owned(), began, broke: None, stop, shared };
+        let (stopped, is_dark, remarks) = (None, false, Vec::new());
+        let path = path.to_owned();
+        let mut device =
+            Self { host, shared: None, port, path, began, broke: None, stop, stopped, is_dark, remarks };
+        device.answer();
         // until it is known how it begins
         while device.host.twin().is_none_or(|twin| twin.state().is_none()) {
             device.stop.check()?;
@@ -107,15 +113,35 @@ impl Device {
         &self.host
     }
 
-    /// What the board has remarked for people since it was last asked.
+    /// Answers for its port, unless it drives through another program's: whoever watches is told there.
+    fn answer(&mut self) {
+        // the old one first: it may lie where the new one goes
+        self.shared = None;
+        if !self.port.as_ref().is_some_and(Port::is_own) {
+            return;
+        }
+        match Shared::new(&self.path, false) {
+            Ok(shared) => self.shared = Some(shared),
+            Err(e) => self.remarks.push(format!("no other program can watch or stop this head: {e}")),
+        }
+    }
+
+    /// What there was to remark for people since it was last asked.
     pub fn remarks(&mut self) -> Vec<String> {
-        std::iter::from_fn(|| self.host.remark()).collect()
+        let mut remarks = std::mem::take(&mut self.remarks);
+        remarks.extend(
+            std::iter::from_fn(|| self.host.remark()).map(|remark| format!("the board remarks: {remark}")),
+        );
+        remarks
     }
 
     /// Why no tick comes any more, if none does.
     #[must_use]
     pub fn failure(&self) -> Option<Failure> {
         let at = self.path.display();
+        if let Some(why) = &self.stopped {
+            return Some(why.clone());
+        }
         match self.host.stage() {
             Stage::Failed(trouble) => Some(Failure::failed("board", format!("{at}: {trouble}"))),
             _ if self.broke.is_some_and(|broke| broke.elapsed() > GONE) => {
@@ -131,6 +157,7 @@ impl Device {
         if self.shared.as_mut().is_some_and(|shared| shared.hear().disarm) {
             // taken at any time, and said until it is confirmed
             let _ = self.host.send(Command::Disarm);
+            self.stopped = Some(stopped(&self.path.to_string_lossy()));
         }
         let Some(port) = &mut self.port else { return self.look_again() };
         let mut bytes = Vec::new();
@@ -148,25 +175,41 @@ impl Device {
     /// The port may be there again.
     fn look_again(&mut self) {
         std::thread::sleep(LOOK_AGAIN);
-        if let Ok(port) = Port::open(&self.path) {
-            (self.port, self.broke) = (Some(port), None);
-            self.host.connect_again(new_session());
+        // one that was its own is not visited at its own socket
+        let opened =
+            if self.shared.is_some() { Port::open_alone(&self.path) } else { Port::open(&self.path) };
+        match opened {
+            Ok(port) => {
+                (self.port, self.broke) = (Some(port), None);
+                self.host.connect_again(new_session());
+                if self.shared.is_none() {
+                    self.answer();
+                }
+            }
+            Err(why) if why.code == "disarmed" => self.stopped = Some(why),
+            Err(_) => {}
         }
     }
 }
 
 impl Rig for Device {
     fn send(&mut self, command: Command) -> Result<(), Command> {
-        self.host.send(command)
+        // whoever stopped it from elsewhere does not want it lit again from here
+        let lights = matches!(command, Command::Arm { .. } | Command::Point(_));
+        if self.stopped.is_some() && lights { Err(command) } else { self.host.send(command) }
     }
 
     fn next(&mut self) -> Option<Telemetry> {
         loop {
             if let Some(told) = self.host.telemetry() {
+                self.is_dark = !told.actuation.lights() && told.darkness.contains(Darkness::Disarmed);
                 self.shared.iter_mut().for_each(|shared| shared.tell(&Seen::of(&told)));
                 return Some(told);
             }
-            if self.failure().is_some() || self.port.is_none() && self.stop.is_wanted() {
+            // who was stopped from elsewhere is told ticks until its board is dark, as far as that can be
+            let goes_on = self.port.is_some() && !matches!(self.host.stage(), Stage::Failed(_));
+            let is_waited_for = self.stopped.is_some() && !self.is_dark && goes_on;
+            if self.failure().is_some() && !is_waited_for || self.port.is_none() && self.stop.is_wanted() {
                 return None;
             }
             self.pump();

@@ -35,7 +35,7 @@ impl Port {
     /// `port`: it is not there, no port, may not be opened, or is in use, by whom, and what to do.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         match Self::open_alone(path) {
-            Err(refused) => match socket_of(path).ok().and_then(|socket| Owner::of(&socket)) {
+            Err(refused) => match socket_of(path).ok().and_then(|socket| Owner::of(&socket).ok().flatten()) {
                 Some(owner) => {
                     let stream = owner.drive()?;
                     let wrong = |e: io::Error| Failure::failed("port", format!("{}: {e}", path.display()));

@@ -67,8 +67,9 @@ pub fn share(path: &Path, lasts_s: Option<f64>, task: Task<'_>) -> Result<Shared
     while !task.stop.is_wanted() && lasts_s.is_none_or(|lasts_s| began.elapsed().as_secs_f64() < lasts_s) {
         let mut wanted = shared.hear();
         if wanted.disarm {
-            // before what its driver says
-            wanted.bytes.splice(..0, disarm());
+            // what its driver says is not wanted any more, nor he
+            wanted.bytes = disarm();
+            shared.send_away();
         }
         let is_driven = shared.is_driven();
         told.drivers += u32::from(is_driven && !was_driven);

@@ -19,8 +19,11 @@ use tracelight_task::Failure;
 
 use crate::seen::Seen;
 
-/// Visitors at once.
-const MOST_VISITORS: usize = 16;
+/// Visitors at once, and for how long one may be silent before he has said what he wants.
+const MOST_VISITORS: usize = 64;
+const GUEST: Duration = Duration::from_secs(5);
+/// For how long a port that is shared is lent to nobody after somebody stopped its board: whoever drove it is to end, and not to come back.
+const STOPPED: Duration = Duration::from_secs(12);
 /// Longest line that a visitor says, bytes, and what waits for one that does not read.
 const MOST_LINE: usize = 64;
 const MOST_WAITING: usize = 1 << 16;
@@ -79,6 +82,10 @@ pub(crate) struct Shared {
     lends: bool,
     /// What was told last, and when.
     told: Option<(Seen, Instant)>,
+    /// When somebody last stopped the board.
+    stopped: Option<Instant>,
+    /// Which socket is this one, whatever lies there by its name later.
+    inode: u64,
 }
 
 #[derive(Debug)]
@@ -92,8 +99,8 @@ struct Visitor {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Role {
-    /// Asks.
-    Guest,
+    /// Has come then, and said nothing yet.
+    Guest(Instant),
     /// Is told what is seen.
     Watcher,
     /// Drives the board, and was last heard then.
@@ -124,11 +131,13 @@ impl Shared {
         }
         let listener = UnixListener::bind(&at)?;
         listener.set_nonblocking(true)?;
+        let inode = std::fs::symlink_metadata(&at)?.ino();
         let does: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
         let program = does.first().map(Path::new).and_then(Path::file_name).unwrap_or_default();
         let first = does.get(1).map_or_else(String::new, |word| format!(" {word}"));
         let does = format!("{}{first}", program.to_string_lossy());
-        Ok(Self { listener, at, port: port.to_owned(), visitors: Vec::new(), does, lends, told: None })
+        let (visitors, port) = (Vec::new(), port.to_owned());
+        Ok(Self { listener, at, port, visitors, does, lends, told: None, stopped: None, inode })
     }
 
     /// Lets visitors in, and hears what they want.
@@ -137,7 +146,12 @@ impl Shared {
             if self.visitors.len() < MOST_VISITORS && stream.set_nonblocking(true).is_ok() {
                 let greeting = format!("{}\n", self.greeting());
                 let waiting = greeting.into_bytes();
-                self.visitors.push(Visitor { stream, line: Vec::new(), waiting, role: Role::Guest });
+                self.visitors.push(Visitor {
+                    stream,
+                    line: Vec::new(),
+                    waiting,
+                    role: Role::Guest(Instant::now()),
+                });
             }
         }
         let mut wanted = Wanted::default();
@@ -145,7 +159,12 @@ impl Shared {
             self.hear_one(number, &mut wanted);
         }
         self.visitors.iter_mut().for_each(Visitor::flush);
-        self.visitors.retain(|visitor| visitor.role != Role::Gone);
+        let stays = |visitor: &Visitor| match visitor.role {
+            Role::Gone => false,
+            Role::Guest(came) => came.elapsed() < GUEST,
+            Role::Watcher | Role::Driver(_) => true,
+        };
+        self.visitors.retain(stays);
         wanted
     }
 
@@ -180,15 +199,23 @@ impl Shared {
     }
 
     fn obey(&mut self, number: usize, line: &[u8], wanted: &mut Wanted) {
-        let is_free = self.lends && !self.is_driven();
+        let is_in_use = !self.lends || self.is_driven();
+        let is_free = self.lends && !self.is_driven() && !self.is_stopped();
         let greeting = format!("{}\n", self.greeting());
         let Some(visitor) = self.visitors.get_mut(number) else { return };
         match line {
             b"watch" => visitor.role = Role::Watcher,
-            b"disarm" => wanted.disarm = true,
+            b"disarm" => {
+                wanted.disarm = true;
+                self.stopped = is_in_use.then(Instant::now).or(self.stopped);
+            }
             b"drive" if is_free => {
                 visitor.role = Role::Driver(Instant::now());
                 visitor.say(YOURS);
+                // who was silent for so long drives no more, though he speaks again
+                let others = self.visitors.iter_mut().enumerate().filter(|(other, _)| *other != number);
+                let expired = others.filter(|(_, other)| matches!(other.role, Role::Driver(_)));
+                expired.for_each(|(_, other)| other.role = Role::Gone);
             }
             // who drives it is in there
             b"drive" => visitor.say(greeting.as_bytes()),
@@ -203,10 +230,21 @@ impl Shared {
         self.visitors.iter().any(drives)
     }
 
+    /// Whether somebody stopped the board a moment ago.
+    fn is_stopped(&self) -> bool {
+        self.stopped.is_some_and(|at| at.elapsed() < STOPPED)
+    }
+
+    /// Sends away whoever drives the board: it was stopped.
+    pub(crate) fn send_away(&mut self) {
+        let drivers = self.visitors.iter_mut().filter(|visitor| matches!(visitor.role, Role::Driver(_)));
+        drivers.for_each(|visitor| visitor.role = Role::Gone);
+    }
+
     fn greeting(&self) -> Value {
         json!({
             "tracelight": env!("CARGO_PKG_VERSION"), "port": self.port.to_string_lossy(), "owner": self.does, "pid": std::process::id(),
-            "lends": self.lends, "driven": !self.lends || self.is_driven(),
+            "lends": self.lends, "driven": !self.lends || self.is_driven(), "stopped": self.is_stopped(),
         })
     }
 
@@ -240,8 +278,11 @@ impl Shared {
 
 impl Drop for Shared {
     fn drop(&mut self) {
-        // who cannot take it away leaves it: nobody answers there
-        let _ = std::fs::remove_file(&self.at);
+        // another program may answer there meanwhile
+        if std::fs::symlink_metadata(&self.at).is_ok_and(|is| is.ino() == self.inode) {
+            // who cannot take it away leaves it: nobody answers there
+            let _ = std::fs::remove_file(&self.at);
+        }
     }
 }
 
@@ -268,6 +309,14 @@ impl Visitor {
     }
 }
 
+/// What is told of a board that somebody else stopped.
+pub(crate) fn stopped(port: &str) -> Failure {
+    let message = format!(
+        "{port}: another program made the head dark (`tracelight stop`): it stays dark; `tracelight resume` with the folder of this run draws what is left"
+    );
+    Failure::failed("disarmed", message)
+}
+
 /// Who has a port, as he greets.
 #[derive(Debug)]
 pub(crate) struct Owner {
@@ -279,13 +328,21 @@ pub(crate) struct Owner {
 const PATIENCE: Duration = Duration::from_millis(500);
 
 impl Owner {
-    /// Visits whoever has a port, at its socket; `None` where nobody answers.
-    pub(crate) fn of(socket: &Path) -> Option<Self> {
-        let mut stream = UnixStream::connect(socket).ok()?;
-        stream.set_read_timeout(Some(PATIENCE)).ok()?;
-        stream.set_write_timeout(Some(PATIENCE)).ok()?;
-        let greeting = line_of(&mut stream).ok()?;
-        Some(Self { stream, greeting: serde_json::from_str(&greeting).ok()? })
+    /// Visits whoever has a port, at its socket; `None` where there is nobody.
+    ///
+    /// # Errors
+    /// Somebody is there, and does not answer.
+    pub(crate) fn of(socket: &Path) -> io::Result<Option<Self>> {
+        let mut stream = match UnixStream::connect(socket) {
+            Err(e) if matches!(e.kind(), io::ErrorKind::NotFound | io::ErrorKind::ConnectionRefused) => {
+                return Ok(None);
+            }
+            connected => connected?,
+        };
+        stream.set_read_timeout(Some(PATIENCE))?;
+        stream.set_write_timeout(Some(PATIENCE))?;
+        let greeting = serde_json::from_str(&line_of(&mut stream)?)?;
+        Ok(Some(Self { stream, greeting }))
     }
 
     /// The port.
@@ -320,6 +377,9 @@ impl Owner {
             self.stream.write_all(b"drive\n")?;
             line_of(&mut self.stream).map(|line| line.as_bytes() == &YOURS[..YOURS.len() - 1])
         };
+        if self.greeting["stopped"] == true {
+            return Err(stopped(self.port()));
+        }
         if is_driven || !is_lent().unwrap_or(false) {
             return Err(refused(self.words(), self.port()));
         }

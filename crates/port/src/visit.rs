@@ -28,8 +28,15 @@ pub struct Darkened {
     pub within_s: Option<f64>,
 }
 
+/// Whoever has a port, as far as he answers.
+enum Found {
+    Owner(Owner),
+    /// At this socket somebody is who does not answer.
+    Silent(PathBuf),
+}
+
 /// Those who have ports, or that one.
-fn owners(port: Option<&Path>) -> Result<Vec<Owner>, Failure> {
+fn owners(port: Option<&Path>) -> Result<Vec<Found>, Failure> {
     let wrong = |e: std::io::Error| {
         Failure::failed("port", format!("who drives heads on this computer cannot be found out: {e}"))
     };
@@ -43,7 +50,11 @@ fn owners(port: Option<&Path>) -> Result<Vec<Owner>, Failure> {
             all
         }
     };
-    Ok(sockets.iter().filter_map(|socket| Owner::of(socket)).collect())
+    let found = |socket: &PathBuf| match Owner::of(socket) {
+        Ok(owner) => owner.map(Found::Owner),
+        Err(_) => Some(Found::Silent(socket.clone())),
+    };
+    Ok(sockets.iter().filter_map(found).collect())
 }
 
 /// Disarms every board that a program of this computer drives, or the one at a port, whoever does; all are told before any is waited for.
@@ -51,18 +62,31 @@ fn owners(port: Option<&Path>) -> Result<Vec<Owner>, Failure> {
 /// # Errors
 /// `port`: who drives heads cannot be found out.
 pub fn darken(port: Option<&Path>) -> Result<Vec<Darkened>, Failure> {
-    let told = owners(port)?.into_iter().map(|mut owner| {
-        let said = owner.stream.write_all(b"disarm\nwatch\n");
-        (owner, said.is_ok(), Instant::now())
-    });
-    let told: Vec<_> = told.collect();
-    let wait = |(mut owner, is_told, since): (Owner, bool, Instant)| {
-        // a board that nobody drives is dark by itself, and says nothing
-        let is_known = is_told && (!owner.is_driven() || is_dark(&mut owner, since));
-        let within_s = is_known.then(|| since.elapsed().as_secs_f64());
-        Darkened { port: owner.port().to_owned(), owner: owner.words(), driven: owner.is_driven(), within_s }
+    let found = owners(port)?;
+    // side by side: one that is slow is not waited for by the others
+    Ok(std::thread::scope(|threads| {
+        let asked: Vec<_> = found.into_iter().map(|one| threads.spawn(|| darkened(one))).collect();
+        asked.into_iter().filter_map(|one| one.join().ok()).collect()
+    }))
+}
+
+/// Disarms the board that somebody has in hand, and waits until it says so.
+fn darkened(found: Found) -> Darkened {
+    let mut owner = match found {
+        Found::Owner(owner) => owner,
+        Found::Silent(socket) => {
+            let port =
+                socket.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+            let owner = "a program that does not answer".to_owned();
+            return Darkened { port, owner, driven: true, within_s: None };
+        }
     };
-    Ok(told.into_iter().map(wait).collect())
+    let since = Instant::now();
+    let is_told = owner.stream.write_all(b"disarm\nwatch\n").is_ok();
+    // a board that nobody drives is dark by itself, and says nothing
+    let is_known = is_told && (!owner.is_driven() || is_dark(&mut owner, since));
+    let within_s = is_known.then(|| since.elapsed().as_secs_f64());
+    Darkened { port: owner.port().to_owned(), owner: owner.words(), driven: owner.is_driven(), within_s }
 }
 
 /// Waits until a board says that it is disarmed and its gate shut; whether it does in time.
@@ -90,7 +114,7 @@ pub fn darkened_text(all: &[Darkened]) -> String {
         ),
     };
     if all.is_empty() {
-        return "no program of this computer drives a head there: its board is dark by itself".to_owned();
+        return "no program of yours was found that drives a head there; a board that nobody drives is dark by itself".to_owned();
     }
     all.iter().map(line).collect::<Vec<_>>().join("\n")
 }
@@ -106,7 +130,11 @@ pub fn darkened_json(all: &[Darkened]) -> Value {
 fn awaited(port: Option<&Path>, until: Option<Instant>, task: Task<'_>) -> Result<Option<Owner>, Failure> {
     let mut is_told = false;
     while !is_over(until, task) {
-        let mut owners = owners(port)?;
+        let answers = |found| match found {
+            Found::Owner(owner) => Some(owner),
+            Found::Silent(_) => None,
+        };
+        let mut owners: Vec<Owner> = owners(port)?.into_iter().filter_map(answers).collect();
         if owners.len() > 1 {
             let ports: Vec<&str> = owners.iter().map(Owner::port).collect();
             let message = format!("several heads are driven: name the port of one: {}", ports.join(", "));

@@ -91,29 +91,6 @@ impl Model {
         self.friction[joint].with_viscous(self.motors[joint].back_emf_nm_s_per_rad())
     }
 
-    /// What a joint's friction looks like to whoever holds commands at its amplifier and takes each volt for torque: what is felt of it, and the dead band.
-    pub fn friction_at_amplifier(&self, joint: Joint) -> Friction {
-        let (felt, motor) = (self.felt_friction(joint), &self.motors[joint]);
-        let dead_nm = motor.torque_nm_per_v * motor.dead_band_v;
-        Friction {
-            coulomb_pos_nm: felt.coulomb_pos_nm + dead_nm,
-            coulomb_neg_nm: felt.coulomb_neg_nm - dead_nm,
-            ..felt
-        }
-    }
-
-    /// Makes it that, as was found there; friction is never less than none.
-    pub fn set_friction_at_amplifier(&mut self, joint: Joint, found: Friction) {
-        let motor = &self.motors[joint];
-        let dead_nm = motor.torque_nm_per_v * motor.dead_band_v;
-        let felt = Friction {
-            coulomb_pos_nm: (found.coulomb_pos_nm - dead_nm).max(0.0),
-            coulomb_neg_nm: (found.coulomb_neg_nm + dead_nm).min(0.0),
-            ..found
-        };
-        self.set_felt_friction(joint, felt);
-    }
-
     /// Makes it that much: what is more than the motor's own voltage takes is friction, which is never less than none.
     pub fn set_felt_friction(&mut self, joint: Joint, felt: Friction) {
         let own = felt.with_viscous(-self.motors[joint].back_emf_nm_s_per_rad());

@@ -21,7 +21,7 @@ const RANGE_MARGIN_COUNTS: f64 = 3.0;
 const MOTION_MARGIN: f64 = 1.1;
 /// Factor for the acceleration: a sigmoid begins and ends with a jump of its speed, which a segment spreads over a tick or two.
 const ACCELERATION_MARGIN: f64 = 4.0;
-/// Share of the speed at which a motor turns by itself that a plan gives its joint.
+/// Share of the speed up to which what a plan may use of a motor's torque turns it, that a plan gives its joint.
 const MOST_OF_ALONE: f64 = 0.8;
 /// Furthest that a segment may let a joint stray, rad: 0.1 m on a target 1 m away, twice what any rig file may ask for. Routines in the dark
 /// ask for half of it.
@@ -60,7 +60,7 @@ impl RigConfig {
     }
 
     /// Highest speed that a plan gives a joint, rad/s: not so high that the motor's own voltage leaves its amplifier nothing to brake or hurry it with.
-    fn speed_limit_rad_s(&self, joint: Joint) -> f64 {
+    pub fn speed_limit_rad_s(&self, joint: Joint) -> f64 {
         let motor = &self.model.motors[joint];
         let wished = self.motion.speed_limit_rad_s[joint];
         // infinite where the motor has none

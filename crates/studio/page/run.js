@@ -37,6 +37,8 @@ export class Run {
     this.mine = false
     this.mode = 'trace'
     this.framing = false
+    /** A job was asked for, and has not begun. */
+    this.begins = false
     this.state = ''
     /** @type {import('./live.js').Told | null} the point that is marked */
     this.point = null
@@ -47,7 +49,7 @@ export class Run {
     this.live = new Live(page, (told) => this.#hear(told), (open) => this.#opened(open))
     this.arm = new Hold(by('arm'), () => this.#ask('arm'))
     by('begin').addEventListener('click', () => this.begin())
-    by('go').addEventListener('click', () => this.#ask(this.framing ? 'next' : 'go-on'))
+    by('go').addEventListener('click', () => this.#ask(this.framing && this.state !== 'armed' ? 'next' : 'go-on'))
     by('pause').addEventListener('click', () => this.#ask('pause'))
     by('pause-now').addEventListener('click', () => this.#ask('pause-now'))
     by('next').addEventListener('click', () => this.#ask('next'))
@@ -89,21 +91,24 @@ export class Run {
 
   /** Begins a job, dark: it waits until somebody arms it. */
   async begin() {
-    if (this.on) return
+    if (this.on || this.begins) return
     this.hooks.problem(null)
     by('attended').hidden = true
+    this.begins = true
+    enable('begin', false)
     try {
       this.mode = this.#mode()
       this.#say('')
       by('checks').replaceChildren()
-      this.mine = this.live.operates = true
       this.live.open()
       await api.attend({ page: this.page, ...this.#flags() })
       this.#show()
       await this.followed()
     } catch (error) {
-      this.mine = this.live.operates = false
       this.hooks.problem(error)
+    } finally {
+      this.begins = false
+      enable('begin', true)
       this.#show()
     }
   }
@@ -175,6 +180,14 @@ export class Run {
       this.on = told.event !== 'live' || told.on
       this.mine = this.live.operates = this.on && operator === this.page
       by('asks').hidden = true
+      if (told.event === 'begun') {
+        // nothing of the one before holds
+        this.now = { event: 'progress' }
+        this.state = ''
+        this.point = null
+        this.framing = false
+        this.heard = performance.now()
+      }
     } else if (told.event === 'progress') {
       this.now = told
       this.heard = performance.now()
@@ -193,7 +206,7 @@ export class Run {
     } else if (told.event === 'fault') {
       this.#say(`${told.code}: ${told.message}`)
     } else if (told.event === 'lost') {
-      this.#say(told.dark ? 'The page that operates it is not heard: dark.' : 'The page that operates it is not heard: it pauses.')
+      this.#say(told.dark ? 'The page that operates it is not heard: stopped, dark.' : 'The page that operates it is not heard: it pauses.')
     } else if (told.event === 'point') {
       this.point = told
       this.hooks.mark([told.x_mm / 1000, told.y_mm / 1000])

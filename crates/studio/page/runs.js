@@ -20,11 +20,17 @@ export function element(name, how = {}, ...children) {
 
 /** Waits until the job is over, and tells how far it is. @param {(job: import('./api.js').Job) => void} told @returns {Promise<import('./api.js').Job | null>} */
 export async function follow(told) {
-  for (;;) {
-    const now = await job()
-    if (!now) return null
-    told(now)
-    if (now.over) return now
+  for (let missed = 0; ; ) {
+    try {
+      const now = await job()
+      if (!now) return null
+      told(now)
+      if (now.over) return now
+      missed = 0
+    } catch (error) {
+      // a server that is busy for a moment is asked again
+      if (++missed > 20) throw error
+    }
     await new Promise((later) => setTimeout(later, EVERY))
   }
 }

@@ -189,14 +189,15 @@ impl Desk {
         Ok((begun, move || {
             let _last = last;
             // whatever becomes of it, pages are told that it is over
-            let live = Attended(&desk.live);
-            let seat = is_live.then_some(live.0 as &dyn Seat);
+            let live = is_live.then(|| Attended(&desk.live));
+            let seat = live.as_ref().map(|live| live.0 as &dyn Seat);
             let done = desk.program.perform(&command, seat, (&*work, &work.stop)).and_then(|performed| {
                 let failure = performed.failure.clone();
                 Ok(Ended { answer: json_of(performed)?, failure })
             });
-            work.end(done.unwrap_or_else(|failure| Ended { answer: Value::Null, failure: Some(failure) }));
+            // before another one may begin
             drop(live);
+            work.end(done.unwrap_or_else(|failure| Ended { answer: Value::Null, failure: Some(failure) }));
         }))
     }
 
@@ -214,14 +215,15 @@ impl Desk {
 
     /// Stops the job in hand, dark; whether there was one. One that pages attend is held, to go on or to be ended; any other one is over.
     pub(crate) fn stop(&self) -> bool {
-        if self.live.is_on() {
+        // before its first tick nobody hears what it is asked, and nothing is drawn that could go on
+        if self.live.is_on() && self.live.has_begun() {
             return self.live.stop();
         }
         self.end()
     }
 
     /// Ends the job in hand, dark; whether there was one.
-    fn end(&self) -> bool {
+    pub(crate) fn end(&self) -> bool {
         let job = locked(&self.job);
         let is_on = job.as_ref().filter(|job| !job.work.is_over());
         is_on.is_some_and(|job| {

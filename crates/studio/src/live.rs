@@ -4,7 +4,8 @@
 //! page ─ wish, "here" ─► Live ─► the job, tick by tick        job ─ events, progress ─► Live ─► every page
 //! ```
 //!
-//! The operator's page says all the time that it is there. One that is silent for [`PAUSED`] pauses the job at its stroke's end, after [`DARK`] it is dark at once: whoever operates it is lost.
+//! The operator's page says all the time that it is there. One that is silent for [`PAUSED`] pauses the job at its stroke's end, after [`DARK`] it is stopped: whoever operates it is lost. What is
+//! stopped is armed anew before there is light, by whomever.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -15,7 +16,7 @@ use tokio::sync::broadcast;
 
 use crate::program::Seat;
 
-/// How long the operator's page may be silent before the job pauses, and before it is dark.
+/// How long the operator's page may be silent before the job pauses, and before it is stopped.
 const PAUSED: Duration = Duration::from_millis(1200);
 const DARK: Duration = Duration::from_millis(1800);
 /// How long an operator has to refuse another one.
@@ -24,8 +25,8 @@ const ASKED: Duration = Duration::from_secs(5);
 const MOST_BEHIND: usize = 512;
 /// Wishes that wait for a tick.
 const MOST_WISHES: usize = 64;
-/// Events that a page is told that comes later: what a job said of itself before its first tick.
-const MOST_EARLIER: usize = 64;
+/// Kinds of events of which a page is told the last one that comes later.
+const KEPT: [&str; 5] = ["preflight", "frame", "point", "fault", "looks"];
 /// What stops a job, whoever says it.
 const STOP: &str = "stop";
 
@@ -44,8 +45,8 @@ struct State {
     operator: Option<Operator>,
     /// Another page that wants to operate it, and since when.
     wants: Option<(String, Instant)>,
-    /// What a page is told first that comes in the middle.
-    earlier: Vec<String>,
+    /// What a page is told first that comes in the middle: the last event of each kind that says how things stand.
+    earlier: Vec<(String, String)>,
     progress: Option<String>,
 }
 
@@ -95,6 +96,11 @@ impl Live {
         self.state().is_on
     }
 
+    /// Whether the job has told how far it is: before, nothing of what is asked is heard.
+    pub(crate) fn has_begun(&self) -> bool {
+        self.state().progress.is_some()
+    }
+
     /// Stops the job, before whatever else was asked; whether there was one.
     pub(crate) fn stop(&self) -> bool {
         let mut state = self.state();
@@ -110,7 +116,9 @@ impl Live {
         let state = self.state();
         let operator = state.operator.as_ref().map(|operator| &operator.page);
         let first = json!({ "event": "live", "on": state.is_on, "operator": operator }).to_string();
-        let all = std::iter::once(first).chain(state.earlier.iter().cloned()).chain(state.progress.clone());
+        let all = std::iter::once(first)
+            .chain(state.earlier.iter().map(|(_, text)| text.clone()))
+            .chain(state.progress.clone());
         (all.collect(), self.told.subscribe())
     }
 
@@ -128,7 +136,10 @@ impl Live {
         }
         let operates = state.operator.as_ref().is_some_and(|operator| operator.page == page);
         match (wish, operates) {
-            ("take", true) => {}
+            ("take", true) => {
+                drop(state);
+                self.say(&json!({ "event": "operator", "page": page }));
+            }
             ("take", false) => {
                 state.wants = Some((page.to_owned(), Instant::now()));
                 drop(state);
@@ -148,6 +159,11 @@ impl Live {
         Ok(())
     }
 
+    /// Whether a page may end the job.
+    pub(crate) fn may_end(&self, page: &str) -> bool {
+        self.state().operator.as_ref().is_some_and(|operator| operator.page == page)
+    }
+
     /// A page is there.
     pub(crate) fn hear(&self, page: &str) {
         let mut state = self.state();
@@ -164,7 +180,9 @@ impl Live {
         let silent = operator.heard.elapsed();
         if silent >= DARK && operator.lost < Lost::Dark {
             operator.lost = Lost::Dark;
-            wishes.push_front("pause-now".to_owned());
+            // in any state, and before whatever else was asked
+            wishes.clear();
+            wishes.push_back(STOP.to_owned());
             self.say(&json!({ "event": "lost", "dark": true }));
         } else if silent >= PAUSED && operator.lost < Lost::Paused {
             operator.lost = Lost::Paused;
@@ -173,8 +191,9 @@ impl Live {
         }
         let is_granted = |since: &Instant| since.elapsed() >= ASKED || operator.lost > Lost::There;
         if let Some((page, _)) = wants.take_if(|(_, since)| is_granted(since)) {
-            // it passes dark, and not armed
-            wishes.extend(["pause-now".to_owned(), "disarm".to_owned()]);
+            // it passes dark, and what its former operator asked is not wanted any more: who has it now arms it
+            wishes.clear();
+            wishes.push_back(STOP.to_owned());
             *operator = Operator { page: page.clone(), heard: Instant::now(), lost: Lost::There };
             self.say(&json!({ "event": "operator", "page": page }));
         }
@@ -189,10 +208,12 @@ impl Seat for Live {
     fn tell(&self, event: &Value) {
         let text = event.to_string();
         let mut state = self.state();
-        if event["event"] == "progress" {
+        let kind = event["event"].as_str().unwrap_or_default();
+        if kind == "progress" {
             state.progress = Some(text.clone());
-        } else if state.earlier.len() < MOST_EARLIER {
-            state.earlier.push(text.clone());
+        } else if KEPT.contains(&kind) {
+            state.earlier.retain(|(known, _)| known != kind);
+            state.earlier.push((kind.to_owned(), text.clone()));
         }
         drop(state);
         let _ = self.told.send(text);
@@ -234,13 +255,15 @@ mod tests {
         };
         assert_eq!(silent(PAUSED), ["pause"]);
         assert!(silent(PAUSED).is_empty());
-        assert_eq!(silent(DARK), ["pause-now"]);
+        // whatever was asked before
+        live.ask("a", "go-on").unwrap();
+        assert_eq!(silent(DARK), ["stop"]);
         assert!(silent(3 * DARK).is_empty());
         live.hear("b");
         assert!(silent(3 * DARK).is_empty(), "another page is not the operator");
         live.hear("a");
         live.look();
-        assert_eq!(silent(DARK), ["pause-now"]);
+        assert_eq!(silent(DARK), ["stop"]);
     }
 
     #[test]
@@ -256,10 +279,11 @@ mod tests {
         live.look();
         assert!(wishes(&live).is_empty() && live.ask("b", "arm").is_err(), "it was refused");
         live.ask("b", "take").unwrap();
+        live.ask("a", "arm").unwrap();
         let waited = live.state().wants.take().map(|(page, _)| (page, Instant::now() - ASKED));
         live.state().wants = waited;
         live.look();
-        assert_eq!(wishes(&live), ["pause-now", "disarm"]);
+        assert_eq!(wishes(&live), ["stop"]);
         assert!(live.ask("b", "arm").is_ok() && live.ask("a", "arm").is_err());
     }
 
@@ -268,11 +292,16 @@ mod tests {
         let live = Live::new();
         live.begin("a");
         live.tell(&json!({ "event": "preflight" }));
+        for n in 0..100 {
+            live.tell(&json!({ "event": "point", "point": n }));
+            live.tell(&json!({ "event": "stroke", "stroke": n }));
+        }
         for n in 0..3 {
             live.tell(&json!({ "event": "progress", "n": n }));
         }
         let (first, _) = live.join();
-        assert_eq!(first.len(), 3);
-        assert!(first[0].contains("\"operator\":\"a\"") && first[2].contains("\"n\":2"), "{first:?}");
+        assert_eq!(first.len(), 4);
+        assert!(first[0].contains("\"operator\":\"a\"") && first[3].contains("\"n\":2"), "{first:?}");
+        assert!(first[1].contains("preflight") && first[2].contains("\"point\":99"), "{first:?}");
     }
 }

@@ -35,6 +35,11 @@ pub(crate) fn ask(desk: &Desk, page: &str, wish: &str) -> Result<(), String> {
     if !is_own && !desk.program.knows(wish) {
         return Err(format!("{wish:?} is nothing that a job can be asked"));
     }
+    if wish == "end" && desk.live.may_end(page) && !desk.live.has_begun() {
+        // nobody hears wishes before the first tick
+        desk.end();
+        return Ok(());
+    }
     desk.live.ask(page, wish)
 }
 
@@ -54,8 +59,16 @@ pub(crate) async fn serve_socket(desk: Arc<Desk>, page: String, mut socket: WebS
                         return;
                     }
                 }
-                // what was missed is told by what comes
-                Err(RecvError::Lagged(_)) => {}
+                // it is told how things stand, as if it came just now
+                Err(RecvError::Lagged(_)) => {
+                    let (first, anew) = desk.live.join();
+                    told = anew;
+                    for event in first {
+                        if socket.send(Message::Text(event.into())).await.is_err() {
+                            return;
+                        }
+                    }
+                }
                 Err(RecvError::Closed) => return,
             },
             said = socket.recv() => match said {

@@ -146,8 +146,7 @@ fn ran(
         (prepared, ran)
     };
     if let Some(device) = &mut device {
-        let remarks = device.rig_mut().remarks();
-        ran.notes.extend(remarks.into_iter().map(|remark| format!("the board remarks: {remark}")));
+        ran.notes.extend(device.rig_mut().remarks());
         // it knows why it is gone
         if let Some(why) = device.rig().failure() {
             ran.notes.push(why.message.clone());

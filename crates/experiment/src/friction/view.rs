@@ -55,7 +55,7 @@ impl Filed for Finding {
 
 /// A joint's figures: a column for each way they were told.
 fn table(rig: &RigConfig, one: &Found) -> String {
-    let friction = rig.model.friction_at_amplifier(one.subject.joint);
+    let friction = rig.model.felt_friction(one.subject.joint);
     let believed = &one.subject.believed;
     let viscous: fn(Side) -> Uncertain = |side| side.viscous;
     let coulomb: fn(Side) -> Uncertain = |side| side.coulomb_nm;
@@ -162,7 +162,7 @@ fn against_gravity(rig: &RigConfig, one: &Found) -> String {
     let lumped = rig.model.bodies.lumped();
     let weight_nm = hypot(lumped.gravity_c, lumped.gravity_s);
     let volts = one.steady.points.iter().filter_map(|p| p.volts).fold(0.0, |most: f64, v| most.max(v.abs()));
-    let torque_nm = volts * one.subject.believed.torque_nm_per_v;
+    let torque_nm = one.subject.believed.torque_nm(volts);
     if one.subject.joint == Joint::Pan || torque_nm == 0.0 || torque_nm > weight_nm {
         return String::new();
     }

@@ -126,10 +126,7 @@ impl Reach {
             let own = pieces.iter().filter(|piece| piece.side == side).map(|piece| piece.rate_rad_s.abs());
             own.fold((f64::INFINITY, 0.0_f64), |(low, high), rate| (low.min(rate), high.max(rate)))
         };
-        Self {
-            torque_nm: believed.torque_nm_per_v * volts.fold(0.0, f64::max),
-            rates_rad_s: [rate(0), rate(1)],
-        }
+        Self { torque_nm: believed.torque_nm(volts.fold(0.0, f64::max)), rates_rad_s: [rate(0), rate(1)] }
     }
 
     fn tells(&self, found: &Side, side: usize) -> bool {

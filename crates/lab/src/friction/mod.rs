@@ -53,8 +53,10 @@ pub struct Trial {
 /// What is believed of a joint whose friction is asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Believed {
-    /// Torque a volt at the amplifier, N m: the scale of all that is found.
+    /// Torque a volt at the amplifier beyond its dead band, N m: the scale of all that is found.
     pub torque_nm_per_v: f64,
+    /// Command of the amplifier of which nothing comes, either sign, V.
+    pub dead_band_v: f64,
     /// Width of a count, rad.
     pub count_rad: f64,
     /// How finely places are known, rad: a count's width where they are counted.
@@ -67,6 +69,13 @@ pub struct Believed {
     pub gravity_nm: Option<[f64; 2]>,
     /// Whether cables may pull at it, the more the further it turns.
     pub cables: bool,
+}
+
+impl Believed {
+    /// Torque that a voltage makes, N m; what the motor's own voltage takes from it counts as friction.
+    pub fn torque_nm(&self, volts: f64) -> f64 {
+        self.torque_nm_per_v * (volts.abs() - self.dead_band_v).max(0.0).copysign(volts)
+    }
 }
 
 impl Trial {

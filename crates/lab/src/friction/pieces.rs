@@ -94,7 +94,7 @@ fn rows(samples: &[Sample], angles: &[f64], believed: &Believed, side: usize) ->
     for (i, sample) in samples.iter().enumerate() {
         if i > 0 {
             let step_s = sample.time_s - samples[i - 1].time_s;
-            torque.hold(believed.torque_nm_per_v * samples[i - 1].volts, step_s);
+            torque.hold(believed.torque_nm(samples[i - 1].volts), step_s);
             turned += 0.5 * step_s * (angles[i - 1] + angles[i] - 2.0 * start.1);
             let middle = 0.5 * (angles[i - 1] + angles[i]);
             let (sin, cos) = sin_cos(middle);

@@ -83,7 +83,7 @@ impl<'a> Motion<'a> {
     /// Way and speed after a time under one voltage: exact while the speed keeps its sign.
     fn step(&self, from: &Sample, rate: f64, time_s: f64) -> (f64, f64) {
         let angle = from.count * self.believed.count_rad;
-        let drive = self.believed.torque_nm_per_v * from.volts - self.weight(angle);
+        let drive = self.believed.torque_nm(from.volts) - self.weight(angle);
         let [pos, neg] = self.sides;
         let (viscous, coulomb) = match rate {
             r if r > 0.0 || (r == 0.0 && drive > pos.1) => pos,

@@ -29,8 +29,8 @@ const END_S: f64 = 1.0;
 /// A voltage counts as held that lasts so much of the longest one; the pulses against stiction do not.
 const HELD: f64 = 0.5;
 
-/// The report's way with trials of one joint.
-pub fn steady(trials: &[&Trial], torque_nm_per_v: f64, count_rad: f64) -> Steady {
+/// The report's way with trials of one joint, whose motor makes a torque of volts, N m.
+pub fn steady(trials: &[&Trial], torque_nm: impl Fn(f64) -> f64, count_rad: f64) -> Steady {
     let holds: Vec<&[super::Sample]> = trials.iter().flat_map(|trial| holds(&trial.samples)).collect();
     let length = |hold: &[super::Sample]| hold[hold.len() - 1].time_s - hold[0].time_s;
     let longest = holds.iter().map(|hold| length(hold)).fold(0.0, f64::max);
@@ -42,7 +42,7 @@ pub fn steady(trials: &[&Trial], torque_nm_per_v: f64, count_rad: f64) -> Steady
         let turned = (last.count - hold[from].count) * count_rad;
         SteadyPoint {
             volts: Some(hold[0].volts),
-            torque_nm: torque_nm_per_v * hold[0].volts,
+            torque_nm: torque_nm(hold[0].volts),
             rate_rad_s: turned / (last.time_s - hold[from].time_s),
         }
     });

@@ -79,10 +79,10 @@ impl Swings {
         let joint = |j: Joint| {
             let rate = TAU * self.times(j) / self.lasts_s;
             let widest = self.widest_rad(rig, j);
-            let speed = rate * widest / (SPEED_SHARE * rig.motion.speed_limit_rad_s[j]);
+            let speed = rate * widest / (SPEED_SHARE * rig.speed_limit_rad_s(j));
             // the envelope adds to it: half as much again at most
-            let most_rad_s2 =
-                (TORQUE_SHARE * possible_rad_s2(&rig.model, j)).min(rig.motion.acceleration_limit_rad_s2[j]);
+            let most_rad_s2 = (TORQUE_SHARE * possible_rad_s2(&rig.model, j, rig.speed_limit_rad_s(j)))
+                .min(rig.motion.acceleration_limit_rad_s2[j]);
             let acceleration = 1.5 * rate * rate * widest / most_rad_s2;
             speed.max(acceleration.sqrt())
         };
@@ -122,14 +122,17 @@ fn quintic(from: (f64, f64, f64), to: (f64, f64, f64), n: f64) -> [f64; 6] {
     [x, v, 0.5 * a, c3, c4, c5]
 }
 
-/// What a motor can do besides holding friction and weight, rad/s².
-fn possible_rad_s2(model: &Model, joint: Joint) -> f64 {
+/// What a motor can do besides holding friction and weight at its share of a speed, rad/s².
+fn possible_rad_s2(model: &Model, joint: Joint, speed_rad_s: f64) -> f64 {
     let lumped = model.bodies.lumped();
     let weight = match joint {
         Joint::Pan => 0.0,
         Joint::Tilt => hypot(lumped.gravity_c, lumped.gravity_s),
     };
-    let left = model.motors[joint].torque_limit_nm() - weight - model.friction[joint].coulomb_nm();
+    let motor = &model.motors[joint];
+    // where it is fastest the motor's own voltage takes its part
+    let own = motor.back_emf_nm_s_per_rad() * SPEED_SHARE * speed_rad_s;
+    let left = motor.torque_limit_nm() - weight - model.friction[joint].coulomb_nm() - own;
     (left / model.own_inertia_kg_m2()[joint]).max(0.1)
 }
 

@@ -14,6 +14,7 @@ fn believed(rig: &RigConfig, joint: Joint, mounting: Mounting) -> Believed {
     let falls = joint == Joint::Tilt && mounting == Mounting::Standing;
     Believed {
         torque_nm_per_v: rig.model.motors[joint].torque_nm_per_v,
+        dead_band_v: rig.model.motors[joint].dead_band_v,
         count_rad: rig.model.encoder.count_rad(),
         step_rad: rig.model.encoder.count_rad(),
         inertia_kg_m2: rig.model.own_inertia_kg_m2()[joint],
@@ -60,7 +61,7 @@ fn thirty_seconds_are_not_steady_and_the_whole_curves_do_not_mind() {
         let trials: Vec<&Trial> = trials.iter().collect();
         let believed = believed(&rig, joint, Mounting::Fixture);
         let friction = &rig.truth.model.friction[joint];
-        let literal = steady(&trials, believed.torque_nm_per_v, believed.count_rad);
+        let literal = steady(&trials, |volts| believed.torque_nm(volts), believed.count_rad);
         let [pos, neg] = [literal.pos, literal.neg].map(Option::unwrap);
         for (line, viscous) in [(pos, friction.viscous_pos), (neg, friction.viscous_neg)] {
             let ratio = line.viscous.value / viscous;
@@ -84,7 +85,7 @@ fn held_for_three_time_constants_the_speeds_are_steady() {
     let trials: Vec<Trial> = long.volts.iter().map(trial).collect();
     let trials: Vec<&Trial> = trials.iter().collect();
     let believed = believed(&rig, Joint::Pan, Mounting::Fixture);
-    let literal = steady(&trials, believed.torque_nm_per_v, believed.count_rad);
+    let literal = steady(&trials, |volts| believed.torque_nm(volts), believed.count_rad);
     let viscous = literal.pos.unwrap().viscous.value;
     assert!((viscous / 0.0009 - 1.0).abs() < 0.05, "{viscous}");
 }
@@ -116,7 +117,7 @@ fn against_gravity_a_volt_does_not_turn_tilt() {
     let mut head = head_alone(&rig, Joint::Tilt, Mounting::Standing, 0);
     let trial = free_trial(&mut head, Joint::Tilt, &protocol, 1.0);
     // it falls, swings and hangs; in the last second nothing moves
-    let points = steady(&[&trial], 0.0774, rig.model.encoder.count_rad()).points;
+    let points = steady(&[&trial], |volts| 0.0774 * volts, rig.model.encoder.count_rad()).points;
     assert!(points.iter().all(|p| p.rate_rad_s.abs() < 1e-3), "{points:?}");
     let believed = believed(&rig, Joint::Tilt, Mounting::Standing);
     let resting = in_a_fixture(&rig, Joint::Tilt, 1.0);
@@ -131,6 +132,7 @@ fn steady_logs_are_enough() {
         Friction { viscous_pos: 0.002, viscous_neg: 0.001, coulomb_pos_nm: 0.05, coulomb_neg_nm: -0.03 };
     let believed = Believed {
         torque_nm_per_v: 0.08,
+        dead_band_v: 0.0,
         count_rad: 1.534e-3,
         step_rad: 1.534e-3,
         inertia_kg_m2: 0.076,
@@ -149,7 +151,7 @@ fn steady_logs_are_enough() {
     let trials: Vec<Trial> = [1.0, 3.0, 8.0, -2.0, -5.0, -9.0].map(trial).into();
     let trials: Vec<&Trial> = trials.iter().collect();
     check(&curves(Joint::Pan, &trials, &believed).unwrap(), &truth, 1e-3, 1e-3);
-    let literal = steady(&trials, believed.torque_nm_per_v, believed.count_rad);
+    let literal = steady(&trials, |volts| believed.torque_nm(volts), believed.count_rad);
     assert!((literal.neg.unwrap().viscous.value / 0.001 - 1.0).abs() < 1e-3);
     let unlike = PanTilt::new(literal.pos, literal.neg);
     assert!(unlike.pan != unlike.tilt);
@@ -247,7 +249,7 @@ fn times_that_hardly_differ_and_holds_of_two_samples_are_borne() {
     ];
     let odd: Vec<&Trial> = odd.iter().collect();
     assert_eq!(odd[0].speeds(1.5e-3, 0.1).len(), 2);
-    let found = steady(&odd, 0.08, 1.5e-3);
+    let found = steady(&odd, |volts| 0.08 * volts, 1.5e-3);
     assert!((found.points.last().unwrap().rate_rad_s - 1.05).abs() < 1e-9, "{found:?}");
     let believed = believed(&RigConfig::report(), Joint::Pan, Mounting::Fixture);
     assert!(curves(Joint::Pan, &odd, &believed).is_err());

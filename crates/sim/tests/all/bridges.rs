@@ -48,8 +48,15 @@ fn no_plan_asks_for_more_volts_than_a_bridge_has() {
     for plan in [plan_of(&rig, star(0.3)), plan_of_all(&rig, house())] {
         for joint in Joint::BOTH {
             let motor = &rig.model.motors[joint];
-            let volts =
-                |p: &tracelight_trajectory::PlanPoint| f64::from(p.torque_fraction[joint]) * motor.most_v();
+            // by the motor's own equation, not as the planner adds it up
+            let volts = |p: &tracelight_trajectory::PlanPoint| {
+                let angle = p.joints.map(|joint| joint.position_rad);
+                let rate = p.joints.map(|joint| joint.velocity_rad_s);
+                let push = p.joints.map(|joint| joint.acceleration_rad_s2);
+                let own = rig.model.friction[joint].torque(rate[joint]);
+                let torque_nm = rig.model.bodies.lumped().inverse(angle.tilt, rate, push)[joint] + own;
+                torque_nm / motor.torque_nm_per_v + motor.back_emf_v_s_per_rad * rate[joint]
+            };
             let most_v = plan.points.iter().map(volts).fold(0.0, |most: f64, v| most.max(v.abs()));
             println!("{joint}: {most_v:.2} V of {:.2}", motor.most_v());
             assert!(most_v <= 1.001 * machine.torque_share * motor.most_v(), "{joint}: {most_v}");

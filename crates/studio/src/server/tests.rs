@@ -47,6 +47,7 @@ impl Program for Noting {
                 progress.stage("run", 10);
                 stop.check()?;
                 if let Some(seat) = seat {
+                    seat.tell(&json!({ "event": "progress" }));
                     while let Some(wish) = seat.wish() {
                         seat.tell(&json!({ "event": "heard", "wish": wish }));
                     }
@@ -352,7 +353,8 @@ fn the_page_that_began_a_job_asks_it_and_the_others_only_stop_it() {
             assert!(found.as_u16() == status && message.contains(why), "{page} {word}: {found} {told}");
         }
         assert_eq!(studio.post("/api/v1/jobs/current/wishes", "{").await.0, StatusCode::BAD_REQUEST);
-        // to stop it does not end it: it may go on
+        // once it goes on, to stop it does not end it
+        tokio::time::sleep(std::time::Duration::from_millis(20)).await;
         assert_eq!(studio.post("/api/v1/stop", "").await.1, json!({ "stopped": true }));
         tokio::time::sleep(std::time::Duration::from_millis(20)).await;
         assert_eq!(studio.job().await["over"], false);
