@@ -85,6 +85,7 @@ const place = async () => {
 const state = page => page.textContent('#state')
 const lamp = page => page.textContent('#lamp')
 const hold = async (page, time) => {
+  await page.locator('#arm').evaluate(arm => arm.scrollIntoView({ block: 'center' }))
   const box = await page.locator('#arm').boundingBox()
   await page.mouse.move(box.x + 20, box.y + 20)
   await page.mouse.down()
@@ -181,7 +182,7 @@ const steps = async () => {
   const page = await opened(390, 844)
   await page.goto(address + '#run')
   await page.click('text=Step')
-  await page.selectOption('#times', '8')
+  await page.selectOption('#times', '2')
   await page.click('#begin')
   await until(page, 'it does not get ready', () => /Ready/.test(document.getElementById('state').textContent))
   await hold(page, 1100)

@@ -103,6 +103,8 @@ export class Run {
       this.live.open()
       await api.attend({ page: this.page, ...this.#flags() })
       this.#show()
+      // on a phone what comes next is in view
+      setTimeout(() => by('arm').scrollIntoView({ block: 'center' }), 100)
       await this.followed()
     } catch (error) {
       this.hooks.problem(error)
