@@ -77,7 +77,11 @@ function boxOf(flags) {
 
 const run = new Run(page, {
   asked: () => store.asked,
-  at: (share) => (share < 0 ? timeline.rest() : timeline.to(share)),
+  at: (share, lit) => {
+    wall.dark = share >= 0 && !lit
+    if (share < 0) timeline.rest()
+    else timeline.to(share)
+  },
   stroke: (number) => wall.upTo(number),
   mark: (at) => wall.marks(at),
   ended: (job) => showResult(by('attended'), job),

@@ -18,8 +18,8 @@ const STATES = {
 }
 
 /**
- * @typedef {{ asked: () => { picture: string, flags: api.Flags }, at: (share: number) => void, stroke: (number: number) => void, mark: (at: [number, number] | null) => void, ended: (job: api.Job) => void, problem: (error: unknown) => void, lamp: (text: string, lit: boolean) => void }} Hooks
- *   what is shown; how far of the plan it is, 0 to 1, −1 for nowhere; the stroke that is drawn again and again; the place that is marked; how it ended
+ * @typedef {{ asked: () => { picture: string, flags: api.Flags }, at: (share: number, lit: boolean) => void, stroke: (number: number) => void, mark: (at: [number, number] | null) => void, ended: (job: api.Job) => void, problem: (error: unknown) => void, lamp: (text: string, lit: boolean) => void }} Hooks
+ *   what is shown; how far of the plan it is, 0 to 1, −1 for nowhere, and whether there is light; the stroke that is drawn again and again; the place that is marked; how it ended
  */
 
 /** @template {HTMLElement} T @param {string} id @returns {T} */
@@ -124,7 +124,7 @@ export class Run {
     this.live.close()
     this.#show()
     this.hooks.lamp('● Dark', false)
-    this.hooks.at(-1)
+    this.hooks.at(-1, false)
     this.hooks.mark(null)
     this.point = null
     if (ended) this.hooks.ended(ended)
@@ -215,7 +215,10 @@ export class Run {
     } else if (told.event === 'state') {
       this.state = told.to
       // the tick that came to rest had its gate shut
-      if (!ON.includes(told.to)) this.now = { ...this.now, gate: false }
+      if (!ON.includes(told.to)) {
+        this.now = { ...this.now, gate: false }
+        this.#place()
+      }
       // what was wrong before is over
       if (ON.includes(told.to) || told.to === 'armed') this.#say('')
     }
@@ -225,10 +228,10 @@ export class Run {
   /** Shows on the wall how far it is. */
   #place() {
     const { now } = this
-    if (this.framing || !(now.of_s > 0)) this.hooks.at(-1)
-    else if (this.mode === 'trace') this.hooks.at(now.plan_s / now.of_s)
+    if (this.framing || !(now.of_s > 0)) this.hooks.at(-1, false)
+    else if (this.mode === 'trace') this.hooks.at(now.plan_s / now.of_s, now.gate)
     else if (this.mode === 'step' && now.stroke) this.hooks.stroke(now.stroke)
-    else this.hooks.at(-1)
+    else this.hooks.at(-1, false)
   }
 
   /** @param {string} text */

@@ -55,6 +55,8 @@ export class Wall {
     this.first = true
     /** Whether the drawing stays where it is: it is being drawn there. */
     this.fixed = false
+    /** Whether the spot is known to be dark, wherever the plan has it. */
+    this.dark = false
     /** @type {[number, number] | null} a place that is marked, m */
     this.mark = null
     new ResizeObserver(() => this.#resized()).observe(canvas)
@@ -247,7 +249,7 @@ export class Wall {
     this.context.drawImage(seen, 0, 0, this.canvas.clientWidth, this.canvas.clientHeight)
     const tick = Math.min(this.tick, points.rows - 1)
     const [x, y] = this.#pixels([points.x[tick], points.y[tick]])
-    const is_lit = points.lit[tick] > 0
+    const is_lit = points.lit[tick] > 0 && !this.dark
     this.context.beginPath()
     this.context.arc(x, y, is_lit ? 5 : 3.5, 0, 2 * Math.PI)
     this.context.fillStyle = is_lit ? colours.light : colours.wall
