@@ -48,6 +48,12 @@ pub struct AxisConfig {
 impl AxisConfig {
     /// The command at the amplifier of which that much comes, V: it is beyond the dead band, unless nothing is to come.
     pub fn command_v(&self, beyond_v: f32) -> f32 {
+        if self.dead_band_v == 0.0 { beyond_v } else { self.past_dead_band(beyond_v) }
+    }
+
+    /// The same of an amplifier that has one.
+    #[cold]
+    fn past_dead_band(&self, beyond_v: f32) -> f32 {
         if beyond_v == 0.0 { 0.0 } else { beyond_v + self.dead_band_v.copysign(beyond_v) }
     }
 
@@ -56,12 +62,16 @@ impl AxisConfig {
         (command_v.abs() - self.dead_band_v).max(0.0).copysign(command_v)
     }
 
-    /// Voltage of the turning motor at a speed, as a share of the amplifier's limit.
-    pub(crate) fn back_emf_share(&self, rate_rad_s: f32) -> f32 {
+    /// Current of the motor at a share of its amplifier's limit and at a speed, as a share of the largest at standstill.
+    pub(crate) fn current_share(&self, share: f32, rate_rad_s: f32) -> f32 {
+        if self.back_emf_v_s_per_rad == 0.0 { share } else { self.less_back_emf(share, rate_rad_s) }
+    }
+
+    /// The same on an amplifier that gives a voltage. Apart, so that a tick of all others is no longer for it.
+    #[cold]
+    fn less_back_emf(&self, share: f32, rate_rad_s: f32) -> f32 {
+        let own = self.back_emf_v_s_per_rad * rate_rad_s / self.limit_v;
         // a speed that is no number is told as such elsewhere, and must not become the heat of a motor
-        if self.back_emf_v_s_per_rad == 0.0 || !rate_rad_s.is_finite() {
-            return 0.0;
-        }
-        self.back_emf_v_s_per_rad * rate_rad_s / self.limit_v
+        if own.is_finite() { share - own } else { share }
     }
 }

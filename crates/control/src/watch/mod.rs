@@ -158,7 +158,7 @@ impl Watch {
         let faults = PanTilt::from_fn(|j| {
             let (axis, beyond_v) = (&config.axes[j], servo.beyond_v()[j]);
             let share = beyond_v / axis.limit_v;
-            let current = share - axis.back_emf_share(servo.estimates()[j].velocity_rad_s);
+            let current = axis.current_share(share, servo.estimates()[j].velocity_rad_s);
             self.motors[j].tick(&axis.rating, share, current).map(|found| found.by(j))
         });
         faults.pan.or(faults.tilt)
