@@ -51,7 +51,7 @@ impl AxisConfig {
         if self.dead_band_v == 0.0 { beyond_v } else { self.past_dead_band(beyond_v) }
     }
 
-    /// The same of an amplifier that has one.
+    /// Command of an amplifier with a dead band, V: see [`command_v`](Self::command_v). Apart, so that a tick of all others is no longer for it.
     #[cold]
     fn past_dead_band(&self, beyond_v: f32) -> f32 {
         if beyond_v == 0.0 { 0.0 } else { beyond_v + self.dead_band_v.copysign(beyond_v) }
@@ -67,7 +67,7 @@ impl AxisConfig {
         if self.back_emf_v_s_per_rad == 0.0 { share } else { self.less_back_emf(share, rate_rad_s) }
     }
 
-    /// The same on an amplifier that gives a voltage. Apart, so that a tick of all others is no longer for it.
+    /// Share of the current that an amplifier gives which gives a voltage. Apart, so that a tick of all others is no longer for it.
     #[cold]
     fn less_back_emf(&self, share: f32, rate_rad_s: f32) -> f32 {
         let own = self.back_emf_v_s_per_rad * rate_rad_s / self.limit_v;
