@@ -14,7 +14,7 @@ use crate::house_rules::sources;
 use crate::support::{folder, root};
 
 /// Lines that cannot run here, exactly as they stand, and why.
-const NOT_RUN: [(&str, &str); 22] = [
+const NOT_RUN: [(&str, &str); 23] = [
     ("tracelight studio", "opens a browser"),
     ("tracelight studio examples/sign.svg --folder out/studio --no-open", "waits for Ctrl-C"),
     ("tracelight home --by-stops --rig /dev/ttyACM0:my-head.toml", "a real board"),
@@ -35,6 +35,7 @@ const NOT_RUN: [(&str, &str); 22] = [
     ("tracelight rig share /dev/ttyACM0 --for 10min", "a real board"),
     ("tracelight stop", "makes heads dark that other tests drive"),
     ("tracelight stop /dev/ttyACM0", "a real board"),
+    ("tracelight watch", "waits until a program drives a head"),
     ("tracelight watch /dev/ttyACM0 --for 10s --json", "a real board"),
     ("tracelight completions bash > /etc/bash_completion.d/tracelight", "writes into the system's folders"),
 ];
