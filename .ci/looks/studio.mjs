@@ -93,10 +93,18 @@ const hold = async (page, time) => {
   await page.mouse.up()
   await page.waitForTimeout(150)
 }
-const ready = async page => {
-  await page.goto(address + '#run')
+const getReady = async page => {
   await page.click('#begin')
   await until(page, 'it does not get ready', () => /Ready/.test(document.getElementById('state').textContent))
+}
+const ready = async page => {
+  await page.goto(address + '#run')
+  await getReady(page)
+}
+const goes = async page => {
+  await getReady(page)
+  await hold(page, 1100)
+  await page.click('#go')
 }
 const lit = page => page.evaluate(() => document.body.classList.contains('lit'))
 const untilLit = (page, when) => until(page, `it is not lit ${when}`, () => document.body.classList.contains('lit'))
@@ -183,30 +191,21 @@ const steps = async () => {
   await page.goto(address + '#run')
   await page.click('text=Step')
   await page.selectOption('#times', '2')
-  await page.click('#begin')
-  await until(page, 'it does not get ready', () => /Ready/.test(document.getElementById('state').textContent))
-  await hold(page, 1100)
-  await page.click('#go')
+  await goes(page)
   for (const number of [1, 2, 3]) {
     await until(page, `stroke ${number} is not drawn`, `/again and again/.test(document.getElementById('state').textContent) && /stroke ${number} of/.test(document.getElementById('where').textContent)`)
     await page.click('#next')
   }
   await ended(page)
   await page.click('text=Points')
-  await page.click('#begin')
-  await until(page, 'it does not get ready', () => /Ready/.test(document.getElementById('state').textContent))
-  await hold(page, 1100)
-  await page.click('#go')
+  await goes(page)
   await until(page, 'no point is marked', () => / 1 of /.test(document.getElementById('where').textContent))
   await page.click('#next')
   await until(page, 'the next point is not marked', () => / 2 of /.test(document.getElementById('where').textContent))
   await ended(page)
   await page.click('text=Trace')
   await page.selectOption('#frame', 'box')
-  await page.click('#begin')
-  await until(page, 'it does not get ready', () => /Ready/.test(document.getElementById('state').textContent))
-  await hold(page, 1100)
-  await page.click('#go')
+  await goes(page)
   await until(page, 'the frame is not shown', () => /frame/.test(document.getElementById('state').textContent) && document.body.classList.contains('lit'))
   await page.click('#go')
   await until(page, 'the drawing does not follow its frame', () => /stroke 1 of/.test(document.getElementById('where').textContent))

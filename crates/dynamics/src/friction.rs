@@ -30,6 +30,11 @@ impl Friction {
         self.coulomb_pos_nm.max(-self.coulomb_neg_nm)
     }
 
+    /// Mean slope of both directions, N m s/rad: what a linear model has of it.
+    pub const fn mean_viscous(&self) -> f64 {
+        0.5 * (self.viscous_pos + self.viscous_neg)
+    }
+
     /// With that much more viscous friction either way, N m s/rad.
     #[must_use]
     pub fn with_viscous(self, more: f64) -> Self {

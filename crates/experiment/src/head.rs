@@ -84,10 +84,7 @@ impl HeadChoice {
         const HALF_RANGE_RAD: f64 = 0.463_647_609_000_806_1;
         let (name, bodies, viscous) = match &self.masses {
             Masses::Rig(rig) => {
-                let viscous = PanTilt::from_fn(|j| {
-                    let felt = rig.model.felt_friction(j);
-                    0.5 * (felt.viscous_pos + felt.viscous_neg)
-                });
+                let viscous = PanTilt::from_fn(|j| rig.model.felt_friction(j).mean_viscous());
                 (format!("rig {}", rig.name), rig.model.bodies, viscous)
             }
             Masses::Set(set) => {

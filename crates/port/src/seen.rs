@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 use tracelight_rig::wire::Row;
 use tracelight_rig::{Darkness, DarknessSet, Fault, PanTilt, Phase, TICK_F64_S, Telemetry};
+use tracelight_task::phase_word;
 
 /// A tick as whoever watches is told of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,19 +17,6 @@ pub(crate) struct Seen {
     fault: Option<Fault>,
     /// Where the joints are believed to be, rad, where that is known.
     angle_rad: Option<PanTilt<f32>>,
-}
-
-/// Names of phases for scripts.
-pub(crate) const fn phase_name(phase: Phase) -> &'static str {
-    match phase {
-        Phase::Dark => "dark",
-        Phase::Armed => "armed",
-        Phase::Tracing => "tracing",
-        Phase::Holding => "holding",
-        Phase::Testing => "testing",
-        Phase::Done => "done",
-        Phase::Faulted => "faulted",
-    }
 }
 
 impl Seen {
@@ -71,7 +59,7 @@ impl Seen {
         let reasons = Darkness::ALL.into_iter().filter(|&reason| self.darkness.contains(reason));
         let degrees = |rad: f32| (f64::from(rad).to_degrees() * 1e4).round() / 1e4;
         json!({
-            "time_s": f64::from(self.tick) * TICK_F64_S, "phase": phase_name(self.phase), "gate": self.gate, "homed": self.homed,
+            "time_s": f64::from(self.tick) * TICK_F64_S, "phase": phase_word(self.phase), "gate": self.gate, "homed": self.homed,
             "dark_because": reasons.map(Darkness::code).collect::<Vec<_>>(), "fault": self.fault.map(Fault::code),
             "plan_s": f64::from(self.plan_tick) * TICK_F64_S,
             "pan_deg": self.angle_rad.map(|at| degrees(at.pan)), "tilt_deg": self.angle_rad.map(|at| degrees(at.tilt)),

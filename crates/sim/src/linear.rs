@@ -34,10 +34,7 @@ impl LinearHead {
             (gravity(pose_rad.tilt + STEP_RAD) - gravity(pose_rad.tilt - STEP_RAD)) / (2.0 * STEP_RAD);
         Self {
             inertia_kg_m2: lumped.mass(pose_rad.tilt).own_inertia(),
-            viscous: PanTilt::from_fn(|j| {
-                let felt = truth.felt_friction(j);
-                0.5 * (felt.viscous_pos + felt.viscous_neg)
-            }),
+            viscous: PanTilt::from_fn(|j| truth.felt_friction(j).mean_viscous()),
             stiffness: PanTilt::new(0.0, slope),
             torque_nm_per_v: truth.motors.map(|m| m.torque_nm_per_v),
             angle_rad: PanTilt::default(),

@@ -39,15 +39,32 @@ pub(crate) struct Live {
 
 #[derive(Debug, Default)]
 struct State {
-    /// Whether a job may be asked anything.
-    is_on: bool,
     wishes: VecDeque<String>,
+    /// Who operates the job: as long as one goes on there is one.
     operator: Option<Operator>,
     /// Another page that wants to operate it, and since when.
     wants: Option<(String, Instant)>,
     /// What a page is told first that comes in the middle: the last event of each kind that says how things stand.
     earlier: Vec<(String, String)>,
     progress: Option<String>,
+}
+
+impl State {
+    /// Whether a job may be asked anything.
+    const fn is_on(&self) -> bool {
+        self.operator.is_some()
+    }
+
+    /// Stops the job: whatever else was asked is not wanted any more.
+    fn stop(&mut self) {
+        self.wishes.clear();
+        self.wishes.push_back(STOP.to_owned());
+    }
+
+    /// The operator, if a page is that.
+    fn operated_by(&mut self, page: &str) -> Option<&mut Operator> {
+        self.operator.as_mut().filter(|operator| operator.page == page)
+    }
 }
 
 #[derive(Debug)]
@@ -63,6 +80,13 @@ enum Lost {
     There,
     Paused,
     Dark,
+}
+
+impl Operator {
+    /// A page that operates from now on.
+    fn new(page: &str) -> Self {
+        Self { page: page.to_owned(), heard: Instant::now(), lost: Lost::There }
+    }
 }
 
 impl Live {
@@ -81,8 +105,7 @@ impl Live {
 
     /// A job begins, which that page operates.
     pub(crate) fn begin(&self, page: &str) {
-        let operator = Operator { page: page.to_owned(), heard: Instant::now(), lost: Lost::There };
-        *self.state() = State { is_on: true, operator: Some(operator), ..State::default() };
+        *self.state() = State { operator: Some(Operator::new(page)), ..State::default() };
         self.say(&json!({ "event": "begun", "operator": page }));
     }
 
@@ -93,7 +116,7 @@ impl Live {
     }
 
     pub(crate) fn is_on(&self) -> bool {
-        self.state().is_on
+        self.state().is_on()
     }
 
     /// Whether the job has told how far it is: before, nothing of what is asked is heard.
@@ -104,18 +127,17 @@ impl Live {
     /// Stops the job, before whatever else was asked; whether there was one.
     pub(crate) fn stop(&self) -> bool {
         let mut state = self.state();
-        if state.is_on {
-            state.wishes.clear();
-            state.wishes.push_back(STOP.to_owned());
+        if state.is_on() {
+            state.stop();
         }
-        state.is_on
+        state.is_on()
     }
 
     /// A page's line: what it is told first, and then whatever happens.
     pub(crate) fn join(&self) -> (Vec<String>, broadcast::Receiver<String>) {
         let state = self.state();
         let operator = state.operator.as_ref().map(|operator| &operator.page);
-        let first = json!({ "event": "live", "on": state.is_on, "operator": operator }).to_string();
+        let first = json!({ "event": "live", "on": state.is_on(), "operator": operator }).to_string();
         let all = std::iter::once(first)
             .chain(state.earlier.iter().map(|(_, text)| text.clone()))
             .chain(state.progress.clone());
@@ -131,11 +153,10 @@ impl Live {
             return if self.stop() { Ok(()) } else { Err("nothing is traced".to_owned()) };
         }
         let mut state = self.state();
-        if !state.is_on {
+        if !state.is_on() {
             return Err("nothing is traced".to_owned());
         }
-        let operates = state.operator.as_ref().is_some_and(|operator| operator.page == page);
-        match (wish, operates) {
+        match (wish, state.operated_by(page).is_some()) {
             ("take", true) => {
                 drop(state);
                 self.say(&json!({ "event": "operator", "page": page }));
@@ -161,13 +182,12 @@ impl Live {
 
     /// Whether a page may end the job.
     pub(crate) fn may_end(&self, page: &str) -> bool {
-        self.state().operator.as_ref().is_some_and(|operator| operator.page == page)
+        self.state().operated_by(page).is_some()
     }
 
     /// A page is there.
     pub(crate) fn hear(&self, page: &str) {
-        let mut state = self.state();
-        if let Some(operator) = state.operator.as_mut().filter(|operator| operator.page == page) {
+        if let Some(operator) = self.state().operated_by(page) {
             (operator.heard, operator.lost) = (Instant::now(), Lost::There);
         }
     }
@@ -175,14 +195,14 @@ impl Live {
     /// Looks whether the operator is still there, and whether another one becomes it.
     pub(crate) fn look(&self) {
         let mut state = self.state();
-        let State { operator, wants, wishes, is_on, .. } = &mut *state;
-        let Some(operator) = operator.as_mut().filter(|_| *is_on) else { return };
+        let State { operator, wants, wishes, .. } = &mut *state;
+        let Some(operator) = operator else { return };
         let silent = operator.heard.elapsed();
+        let mut stops = false;
         if silent >= DARK && operator.lost < Lost::Dark {
             operator.lost = Lost::Dark;
-            // in any state, and before whatever else was asked
-            wishes.clear();
-            wishes.push_back(STOP.to_owned());
+            // in any state
+            stops = true;
             self.say(&json!({ "event": "lost", "dark": true }));
         } else if silent >= PAUSED && operator.lost < Lost::Paused {
             operator.lost = Lost::Paused;
@@ -192,10 +212,12 @@ impl Live {
         let is_granted = |since: &Instant| since.elapsed() >= ASKED || operator.lost > Lost::There;
         if let Some((page, _)) = wants.take_if(|(_, since)| is_granted(since)) {
             // it passes dark, and what its former operator asked is not wanted any more: who has it now arms it
-            wishes.clear();
-            wishes.push_back(STOP.to_owned());
-            *operator = Operator { page: page.clone(), heard: Instant::now(), lost: Lost::There };
+            stops = true;
+            *operator = Operator::new(&page);
             self.say(&json!({ "event": "operator", "page": page }));
+        }
+        if stops {
+            state.stop();
         }
     }
 }

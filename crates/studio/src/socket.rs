@@ -6,6 +6,7 @@ use std::time::Duration;
 use axum::extract::ws::{Message, WebSocket};
 use serde::Deserialize;
 use serde_json::json;
+use tokio::sync::broadcast::Receiver;
 use tokio::sync::broadcast::error::RecvError;
 
 use crate::desk::Desk;
@@ -45,12 +46,7 @@ pub(crate) fn ask(desk: &Desk, page: &str, wish: &str) -> Result<(), String> {
 
 /// Tells a page what happens, and hears it, until it leaves.
 pub(crate) async fn serve_socket(desk: Arc<Desk>, page: String, mut socket: WebSocket) {
-    let (first, mut told) = desk.live.join();
-    for event in first {
-        if socket.send(Message::Text(event.into())).await.is_err() {
-            return;
-        }
-    }
+    let Some(mut told) = joined(&desk, &mut socket).await else { return };
     loop {
         tokio::select! {
             event = told.recv() => match event {
@@ -61,13 +57,8 @@ pub(crate) async fn serve_socket(desk: Arc<Desk>, page: String, mut socket: WebS
                 }
                 // it is told how things stand, as if it came just now
                 Err(RecvError::Lagged(_)) => {
-                    let (first, anew) = desk.live.join();
+                    let Some(anew) = joined(&desk, &mut socket).await else { return };
                     told = anew;
-                    for event in first {
-                        if socket.send(Message::Text(event.into())).await.is_err() {
-                            return;
-                        }
-                    }
                 }
                 Err(RecvError::Closed) => return,
             },
@@ -84,6 +75,15 @@ pub(crate) async fn serve_socket(desk: Arc<Desk>, page: String, mut socket: WebS
             },
         }
     }
+}
+
+/// Tells a page how things stand; what it is told from then on, or nothing if it has left.
+async fn joined(desk: &Desk, socket: &mut WebSocket) -> Option<Receiver<String>> {
+    let (first, told) = desk.live.join();
+    for event in first {
+        socket.send(Message::Text(event.into())).await.ok()?;
+    }
+    Some(told)
 }
 
 /// Takes what a page said; what it is answered, if something is wrong with it.

@@ -10,8 +10,9 @@ use std::time::{Duration, Instant};
 
 use tracelight_aim::HeadPose;
 use tracelight_pipeline::request_of;
-use tracelight_port::{Served, Serving, serve};
-use tracelight_sim::{RigConfig, SimulatedRig};
+use tracelight_port::{Device, Served, Serving, serve};
+use tracelight_session::{Request, Session, State};
+use tracelight_sim::{RigConfig, SimulatedRig, job_of};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
 use tracelight_task::{Failure, NoProgress, Stop, Task};
 use tracelight_trajectory::{Plan, plan};
@@ -57,4 +58,15 @@ pub(crate) fn circle() -> Plan {
     path.close();
     let drawing = Drawing { strokes: vec![Stroke::new(path)] };
     plan(&drawing, &config.machine(HeadPose::square_on(0.9144)), &request_of(&config)).unwrap()
+}
+
+/// Asks what brings a session on its way to that plan, if anything does: it parks first, as the head sank while its motors had no volts.
+pub(crate) fn bring_on(wall: &mut Session<Device>, plan: &Plan, parked: &mut bool) {
+    let asked = match wall.state() {
+        State::Ready if !std::mem::replace(parked, true) => wall.request(Request::Park),
+        State::Ready => wall.request(Request::Arm),
+        State::Armed => wall.request(Request::Trace(job_of(plan, false))),
+        _ => Ok(()),
+    };
+    asked.unwrap();
 }

@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 use tracelight_device::{Host, Stage};
 use tracelight_port::{Device, Port, examine, examined_json, examined_text, serve};
 use tracelight_rig::{Command, PanTilt, Phase, RateLimit, Segment};
-use tracelight_session::{Request, Session, State};
-use tracelight_sim::{RigConfig, job_of};
+use tracelight_session::{Session, State};
+use tracelight_sim::RigConfig;
 use tracelight_task::{NoProgress, Stop, Task};
 
-use crate::{circle, served, serving};
+use crate::{bring_on, circle, served, serving};
 
 #[test]
 fn a_board_says_what_it_is_and_how_good_its_line_is() {
@@ -159,17 +159,7 @@ fn a_session_parks_arms_and_traces_a_drawing_through_a_port() {
             if reached.last() != Some(&wall.state()) {
                 reached.push(wall.state());
             }
-            let result = match wall.state() {
-                // it sank while its motors had no volts
-                State::Ready if !parked => {
-                    parked = true;
-                    wall.request(Request::Park)
-                }
-                State::Ready => wall.request(Request::Arm),
-                State::Armed => wall.request(Request::Trace(job_of(&plan, false))),
-                _ => Ok(()),
-            };
-            result.unwrap();
+            bring_on(&mut wall, &plan, &mut parked);
         }
         assert_eq!(wall.state(), State::Done, "{reached:?}");
         assert_eq!(wall.rig().host().stage(), Stage::Running);

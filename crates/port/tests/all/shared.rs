@@ -2,15 +2,15 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use tracelight_port::{Device, Port, darken, darkened_text, seen_text, share, watch};
-use tracelight_session::{Request, Session, State};
-use tracelight_sim::{RigConfig, job_of};
-use tracelight_task::{NoProgress, Stop, Task};
+use tracelight_port::{Device, Port, SharedFor, darken, darkened_text, seen_text, share, watch};
+use tracelight_session::{Session, State};
+use tracelight_sim::RigConfig;
+use tracelight_task::{Failure, NoProgress, Stop, Task};
 
-use crate::{circle, served};
+use crate::{bring_on, circle, served};
 
 /// Traces a circle at a port until it is done, stopped, or was long enough; how it ended.
 fn trace(at: &Path, stop: &Stop) -> State {
@@ -31,16 +31,7 @@ fn trace(at: &Path, stop: &Stop) -> State {
             break;
         };
         assert_eq!(told.fault(), None);
-        let result = match wall.state() {
-            State::Ready if !parked => {
-                parked = true;
-                wall.request(Request::Park)
-            }
-            State::Ready => wall.request(Request::Arm),
-            State::Armed => wall.request(Request::Trace(job_of(&plan, false))),
-            _ => Ok(()),
-        };
-        result.unwrap();
+        bring_on(&mut wall, &plan, &mut parked);
     }
     wall.state()
 }
@@ -60,6 +51,12 @@ fn until_lit(at: &Path) -> Vec<serde_json::Value> {
         }
     }
     panic!("it was never lit: {seen:?}");
+}
+
+/// Shares a port in another thread until it is stopped, or that long, s.
+fn shared(at: &Path, lasts_s: Option<f64>, stop: &Stop) -> JoinHandle<Result<SharedFor, Failure>> {
+    let (at, stop) = (at.to_owned(), stop.clone());
+    thread::spawn(move || share(&at, lasts_s, Task { progress: &NoProgress, stop: &stop }))
 }
 
 #[test]
@@ -94,12 +91,8 @@ fn a_head_that_another_program_drives_is_watched_and_made_dark_by_anybody() {
 #[test]
 fn of_those_who_share_a_port_one_drives_at_a_time_and_anybody_makes_it_dark() {
     served("report", "lent", |at| {
-        let (shared, stop) = (at.to_owned(), Stop::default());
-        let until = stop.clone();
-        let owner = thread::spawn(move || {
-            let task = Task { progress: &NoProgress, stop: &until };
-            share(&shared, None, task)
-        });
+        let stop = Stop::default();
+        let owner = shared(at, None, &stop);
         let since = Instant::now();
         while darken(Some(at)).unwrap().is_empty() && since.elapsed() < Duration::from_secs(5) {
             thread::sleep(Duration::from_millis(5));
@@ -134,12 +127,8 @@ fn of_those_who_share_a_port_one_drives_at_a_time_and_anybody_makes_it_dark() {
 #[test]
 fn who_drives_and_says_nothing_makes_room_for_another_one() {
     served("report", "silent", |at| {
-        let (shared, stop) = (at.to_owned(), Stop::default());
-        let until = stop.clone();
-        let owner = thread::spawn(move || {
-            let task = Task { progress: &NoProgress, stop: &until };
-            share(&shared, Some(20.0), task)
-        });
+        let stop = Stop::default();
+        let owner = shared(at, Some(20.0), &stop);
         let since = Instant::now();
         let mut first = None;
         while first.is_none() && since.elapsed() < Duration::from_secs(5) {
