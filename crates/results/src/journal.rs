@@ -152,6 +152,15 @@ fn bounded(path: &Path) -> std::io::Result<String> {
     Ok(text)
 }
 
+/// Whether an argument names that real path: by itself, as a flag's value, or as what stands behind a word, as in `emulated:my-head.toml`.
+fn is_named(path: &Path, arguments: &[String]) -> bool {
+    let is_it = |name: &str| std::fs::canonicalize(name).is_ok_and(|real| real == path);
+    arguments.iter().any(|argument| {
+        let value = argument.split_once('=').map_or(argument.as_str(), |(_, value)| value);
+        is_it(argument) || is_it(value) || value.match_indices(':').any(|(at, _)| is_it(&value[at + 1..]))
+    })
+}
+
 impl Asked {
     /// Of a job that is about to be run, by these arguments of the program, `begun` then.
     ///
@@ -165,7 +174,8 @@ impl Asked {
     ) -> Result<Self, Failure> {
         let drawing = &prepared.schedule.ordered.drawing;
         let folder = std::env::current_dir().unwrap_or_default();
-        let inputs = files::inputs().into_iter().map(|path| {
+        // a program that does many commands has read other files too
+        let inputs = files::inputs().into_iter().filter(|path| is_named(path, arguments)).map(|path| {
             let sha256 = hash_of(&path).map_err(|e| {
                 Failure::usage("unreadable", format!("cannot read {} again: {e}", path.display()))
             })?;

@@ -47,11 +47,8 @@ pub fn runs(dir: &Path) -> Result<Vec<ListedRun>, Failure> {
     let mut rows = Vec::new();
     for entry in entries {
         let dir = entry.map_err(unreadable)?.path();
-        if let Ok(Kept { asked, progress }) = journal::read(&dir) {
-            let summary = summary(&dir).unwrap_or(Value::Null);
-            let is_running = ResultFolder::hold(&dir).is_err();
-            let points = ticked_off(&dir);
-            rows.push(ListedRun { dir, asked, progress, points, summary, is_running, went_on_in: None });
+        if let Ok(kept) = journal::read(&dir) {
+            rows.push(listed(&dir, kept));
         }
     }
     rows.sort_by(|a, b| (&a.asked.begun, &a.dir).cmp(&(&b.asked.begun, &b.dir)));
@@ -65,6 +62,19 @@ pub fn runs(dir: &Path) -> Result<Vec<ListedRun>, Failure> {
     let newest: Vec<Option<PathBuf>> = rows.iter().map(newest).collect();
     rows.iter_mut().zip(newest).for_each(|(row, newest)| row.went_on_in = newest);
     Ok(rows)
+}
+
+/// A run by itself, whatever other ones are beside it.
+pub(crate) fn listed(dir: &Path, Kept { asked, progress }: Kept) -> ListedRun {
+    ListedRun {
+        dir: dir.to_owned(),
+        asked,
+        progress,
+        points: ticked_off(dir),
+        summary: summary(dir).unwrap_or(Value::Null),
+        is_running: ResultFolder::hold(dir).is_err(),
+        went_on_in: None,
+    }
 }
 
 /// Refuses a run that another one beside it went on with: that one knows what is left. `dir` is its real path.
@@ -172,6 +182,7 @@ impl ListedRun {
             "simulated": self.summary["simulated"],
             "finished": self.is_finished(),
             "running": self.is_running,
+            "left": self.is_left(),
             "went_on_in": self.went_on_in,
             "progress": progress,
             "goes_on_with": self.asked.before.last().map(|before| &before.folder),

@@ -44,8 +44,13 @@ pub(crate) fn trace(args: &TraceArgs, seat: Option<&dyn Seat>, task: Task<'_>) -
 }
 
 /// The rest of a run that ended on its way, as a run of its own.
-pub(crate) fn resume(args: &TraceArgs, earlier: &Earlier<'_>, task: Task<'_>) -> Result<Outcome, Failure> {
-    run(args, (Some(earlier), None), task)
+pub(crate) fn resume(
+    args: &TraceArgs,
+    earlier: &Earlier<'_>,
+    seat: Option<&dyn Seat>,
+    task: Task<'_>,
+) -> Result<Outcome, Failure> {
+    run(args, (Some(earlier), seat), task)
 }
 
 /// A run that ended on its way.

@@ -79,6 +79,7 @@ enum Command {
     Rigs(rigs::RigsArgs),
     Resume(resume::ResumeArgs),
     Runs(runs::RunsArgs),
+    Compare(runs::CompareArgs),
     Recover(recover::RecoverArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
@@ -141,9 +142,10 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Rig(args) => (args.voice(), rig::run(args, stop)),
         Command::Rigs(args) => (args.voice, rigs::run(args)),
         Command::Resume(args) => {
-            (args.voice, watched(args.voice, stop, |task| resume::run(args, traced, task)))
+            (args.voice, watched(args.voice, stop, |task| resume::run(args, traced, None, task)))
         }
         Command::Runs(args) => (args.voice, runs::run(args)),
+        Command::Compare(args) => (args.voice, runs::run_compare(args)),
         Command::Recover(args) => (args.voice, recover::run(args)),
         Command::Explain(args) => (args.voice, explain::run(args)),
         Command::Completions(args) => (args.voice, completions::run(args)),
@@ -163,7 +165,9 @@ fn done_for(arguments: &[String], seat: Option<&dyn Seat>, task: Task<'_>) -> Re
     match read(arguments).map_err(|e| failing::refused(&e))? {
         Command::Trace(args) => trace::run(&args, seat, task),
         Command::Plan(args) => plan::run(&args, task),
+        Command::Resume(args) => resume::run(&args, traced, seat, task),
         Command::Runs(args) => runs::run(&args),
+        Command::Compare(args) => runs::run_compare(&args),
         Command::Explain(args) => explain::run(&args),
         _ => Err(Failure::usage("usage", "the studio does not do this command")),
     }

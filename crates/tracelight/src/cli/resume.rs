@@ -2,6 +2,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use tracelight_files::ResultFolder;
+use tracelight_operator::Seat;
 use tracelight_results::{Before, Kept, NOTHING_LEFT, check_newest, read};
 use tracelight_task::{Failure, Task};
 
@@ -36,7 +37,12 @@ pub(crate) struct ResumeArgs {
 /// Reads a command that was given earlier.
 type Traced = fn(&[String]) -> Result<TraceArgs, Failure>;
 
-pub(crate) fn run(args: &ResumeArgs, traced: Traced, task: Task<'_>) -> Result<Answer, Failure> {
+pub(crate) fn run(
+    args: &ResumeArgs,
+    traced: Traced,
+    seat: Option<&dyn Seat>,
+    task: Task<'_>,
+) -> Result<Answer, Failure> {
     let dir = std::fs::canonicalize(&args.dir).unwrap_or_else(|_| args.dir.clone());
     let Kept { asked, progress } = read(&args.dir)?;
     // nobody else goes on with it meanwhile
@@ -72,6 +78,7 @@ pub(crate) fn run(args: &ResumeArgs, traced: Traced, task: Task<'_>) -> Result<A
     match job::resume(
         &request,
         &Earlier { asked: &asked, runs: earlier, beside: &ResultFolder::unnumbered(&dir) },
+        seat,
         task,
     ) {
         Err(none) if none.code == NOTHING_LEFT => {

@@ -2,13 +2,34 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::json;
-use tracelight_results::{ListedRun, runs, table};
+use tracelight_results::{ListedRun, compare, runs, table};
 use tracelight_task::Failure;
 
 use crate::cli::answer::{Answer, Voice};
 
 /// Where runs go unless another folder is given.
 const OUT: &str = "out";
+
+/// Compare two runs: what they were asked, and how they came out
+///
+/// The difference is the second less the first.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight compare out/house out/house-2")]
+pub(crate) struct CompareArgs {
+    /// A run's folder, such as out/house; `tracelight runs` lists them
+    #[arg(value_name = "DIR")]
+    first: PathBuf,
+    /// Another one's
+    #[arg(value_name = "DIR")]
+    second: PathBuf,
+    #[command(flatten)]
+    pub(crate) voice: Voice,
+}
+
+pub(crate) fn run_compare(args: &CompareArgs) -> Result<Answer, Failure> {
+    let compared = compare(&args.first, &args.second)?;
+    Ok(Answer::either(args.voice, || compared.text(), || compared.json().to_string()))
+}
 
 /// List the runs in a folder: when, how large, how exact, how far they came
 #[derive(Args, Debug)]

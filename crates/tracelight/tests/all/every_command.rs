@@ -33,6 +33,7 @@ const LINES: &[&str] = &[
     "trace --camera sim:examples/star.png --out @/seen",
     "runs @",
     "resume @/dark",
+    "compare @/dark @/seen",
     "recover @/dark/run.mcap -o @/whole.mcap",
     "calibrate sheet -o @/pages.pdf",
     "calibrate markers --camera sim -o @/camera.toml",

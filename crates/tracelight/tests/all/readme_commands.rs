@@ -14,8 +14,9 @@ use crate::house_rules::sources;
 use crate::support::{folder, root};
 
 /// Lines that cannot run here, exactly as they stand, and why.
-const NOT_RUN: [(&str, &str); 23] = [
+const NOT_RUN: [(&str, &str); 24] = [
     ("tracelight studio", "opens a browser"),
+    ("tracelight studio --lan", "opens a browser"),
     ("tracelight studio examples/sign.svg --folder out/studio --no-open", "waits for Ctrl-C"),
     ("tracelight home --by-stops --rig /dev/ttyACM0:my-head.toml", "a real board"),
     ("cargo test --workspace", "it runs this test"),
@@ -41,9 +42,11 @@ const NOT_RUN: [(&str, &str); 23] = [
 ];
 
 /// Help examples that need what another command has written.
-const BEFORE: [(&str, &str); 2] = [
+const BEFORE: [(&str, &str); 4] = [
     ("tracelight recover out/house/run.mcap", "tracelight trace examples/house.png"),
     ("tracelight resume out/house", "tracelight trace examples/house.png"),
+    ("tracelight compare out/house out/house-2", "tracelight trace examples/house.png"),
+    ("tracelight compare out/house out/house-2", "tracelight trace examples/house.png --speed 0.5ft/s"),
 ];
 
 /// A command line of a page.

@@ -124,3 +124,30 @@ fn a_folder_that_is_there_stays_as_it_is() {
     assert!(within(&dir).args(told).output().unwrap().status.success());
     assert!(!dir.join("out/house-4").exists());
 }
+
+#[test]
+fn two_runs_are_compared_by_what_they_were_asked_and_how_they_came_out() {
+    let dir = folder("compared");
+    for (out, speed) in [("slow", "--speed=0.5ft/s"), ("fast", "--speed=1ft/s")] {
+        let traced =
+            within(&dir).args(["trace", "house.png", speed, "--out", out, "--quiet"]).output().unwrap();
+        assert!(traced.status.success(), "{}", said(&traced));
+    }
+    let compared = json(&within(&dir).args(["compare", "slow", "fast", "--json"]).output().unwrap());
+    assert_eq!(compared["same_drawing"], true);
+    assert_eq!(compared["only_first_asked"], serde_json::json!(["--speed=0.5ft/s"]));
+    assert_eq!(compared["only_second_asked"], serde_json::json!(["--speed=1ft/s"]));
+    let figure = |name: &str| {
+        let all = compared["figures"].as_array().unwrap();
+        let found = all.iter().find(|figure| figure["name"] == name).unwrap();
+        ["first", "second", "difference"].map(|of| found[of].as_f64().unwrap())
+    };
+    let [slow_s, fast_s, difference_s] = figure("time");
+    assert!(difference_s < -5.0 && (fast_s - slow_s - difference_s).abs() < 1e-9, "{slow_s} {fast_s}");
+    assert!(figure("width")[2] == 0.0 && figure("error, rms")[0] > 0.0);
+    let told = within(&dir).args(["compare", "slow", "fast"]).output().unwrap();
+    let text = String::from_utf8_lossy(&told.stdout).into_owned();
+    assert!(text.contains("only slow was asked: --speed=0.5ft/s"), "{text}");
+    let none = within(&dir).args(["compare", "slow", "."]).output().unwrap();
+    assert!(said(&none).contains("is no folder of a run"), "{}", said(&none));
+}
