@@ -1,6 +1,6 @@
 // A browser uses the studio: node studio.mjs ADDRESS, of one that was just opened on an empty folder.
 // The first minute by one click, dragging, typing, undoing, a wrong value, what is no picture, a picture from a file, stopping from within a field; at three widths, on each ground, nothing
-// axe finds wrong, nothing wider than the screen, no error of a script, nothing asked of anybody else.
+// axe finds wrong, nothing wider than the screen, no error of a script, nothing asked of anybody else; somebody attends a job, is lost, goes on with an old one, and joins from a phone.
 import { readFileSync } from 'node:fs'
 import { createRequire } from 'node:module'
 import { chromium } from 'playwright-core'
@@ -34,7 +34,7 @@ const firstMinute = async () => {
   const report = await page.request.get(new URL(await page.getAttribute('#result a', 'href'), address).href)
   check(report.ok() && /sandbox/.test(report.headers()['content-security-policy']), 'no report, or one that may do anything')
   await page.click('#to-runs')
-  await until(page, 'the run is not listed', () => document.querySelectorAll('#run-list li').length === 1)
+  await until(page, 'the run is not listed', () => document.querySelectorAll('#run-list > li').length === 1)
   await page.close()
   return took
 }
@@ -217,7 +217,7 @@ const steps = async () => {
 const keys = async () => {
   const page = await opened(1280, 900)
   const all = ['Enter', ' ', 'a', 'f', 't', 'r', 'n', 'p', '.', ',', '+', 'PageDown', 'ArrowRight', 'Tab']
-  for (const view of ['', '#run', '#runs']) {
+  for (const view of ['', '#run', '#runs', '#devices']) {
     await page.goto(address + view)
     if (view === '#run') await ready(page)
     await page.evaluate(() => /** @type {HTMLElement} */ (document.activeElement)?.blur())
@@ -236,15 +236,97 @@ const keys = async () => {
   await page.context().close()
 }
 
+// Runs that were: compared, deleted and had back, gone on with at the place where they ended.
+const history = async () => {
+  const page = await opened(1280, 900)
+  const cards = page.locator('#run-list > li')
+  await page.goto(address + '#runs')
+  await until(page, 'no runs are listed', () => document.querySelectorAll('#run-list > li').length > 2)
+  const count = await cards.count()
+  await cards.nth(0).getByText('Delete').click()
+  await until(page, 'a run is not deleted', `document.querySelectorAll('#run-list > li').length === ${count - 1}`)
+  await page.click('#undelete')
+  await until(page, 'a deleted run is not had back', `document.querySelectorAll('#run-list > li').length === ${count}`)
+  await page.click('[data-run=house]')
+  await page.click('[data-run=house-2]')
+  await page.click('#to-compare')
+  await until(page, 'two runs are not compared', () => document.querySelectorAll('#compare-figures tbody tr').length > 8)
+  await page.click('#pair-in')
+  const moved = await page.$$eval('.pane img', images => images.map(image => image.style.transform))
+  check(moved.length === 2 && moved[0] === moved[1] && /scale\(1\.5\)/.test(moved[0]), `walls do not zoom together: ${moved}`)
+  await page.goto(address + '#runs')
+  await page.locator('.acts', { hasText: 'From stroke' }).getByText('Go on', { exact: true }).first().click()
+  await until(page, 'what is gone on with is not told', () => /The rest of /.test(document.getElementById('rest-words').textContent))
+  await goes(page)
+  await untilLit(page, 'when a run is gone on with')
+  const [left, whole] = await page.evaluate(() => [/of ([\d.]+) s$/, /\/ 0:(\d+)/].map((number, n) => Number(number.exec(document.getElementById(['where', 'clock'][n]).textContent)?.[1])))
+  check(left < whole - 0.5, `the rest of a run is ${left} s of ${whole}`)
+  await ended(page)
+  await page.context().close()
+}
+
+// A phone joins by what its camera reads, once, and operates; another device looks on, and stops.
+const devices = async () => {
+  const page = await opened(1280, 900)
+  await page.goto(address + '#devices')
+  const invite = async role => {
+    await page.click(`#invite-${role}`)
+    await until(page, 'no device is invited', () => !document.getElementById('invitation').hidden)
+    await page.waitForTimeout(200)
+    return page.textContent('#link')
+  }
+  const join = async (link, width, height) => {
+    const context = await browser.newContext({ viewport: { width, height }, ignoreHTTPSErrors: true })
+    const device = await context.newPage()
+    device.on('pageerror', error => complaints.push(`a device: ${error.message}`))
+    await device.goto(link)
+    return device
+  }
+  const link = await invite('operator'), lan = link.split('#')[0]
+  const phone = await join(link, 390, 844)
+  await until(phone, 'a phone that joined shows no drawing', () => document.getElementById('count').textContent !== '–')
+  check(!/join/.test(phone.url()), 'the invitation stays in the address')
+  const thief = await join(link, 390, 844)
+  await until(thief, 'an invitation is taken twice', () => !document.getElementById('outside').hidden && /used already/.test(document.getElementById('outside-why').textContent))
+  await page.click('#to-place')
+  await page.click('#to-devices')
+  await until(page, 'who joined is not listed', () => document.querySelectorAll('#device-list li').length === 1)
+  const viewer = await join(await invite('viewer'), 820, 1100)
+  await until(viewer, 'who looks on sees no drawing', () => document.getElementById('count').textContent !== '–')
+  await phone.goto(lan + '#run')
+  await goes(phone)
+  await untilLit(phone, 'from a phone')
+  await until(viewer, 'who looks on does not see the light', () => location.hash === '#run' && document.body.classList.contains('lit'))
+  check(await viewer.isDisabled('#arm') && await viewer.isHidden('#take'), 'who looks on may do more')
+  const began = Date.now()
+  await thief.click('#stop')
+  await until(phone, 'a device that has not joined does not stop it', () => /Stopped/.test(document.getElementById('state').textContent))
+  const took = Date.now() - began
+  // sent away, it is missed, and nobody
+  await hold(phone, 1100)
+  await phone.click('#go')
+  await untilLit(phone, 'after it was stopped from elsewhere')
+  await page.goto(address + '#devices')
+  await page.locator('#device-list button').first().click()
+  await page.goto(address + '#run')
+  await until(page, 'a phone that was sent away leaves it lit', () => /Stopped, dark/.test(document.getElementById('state').textContent))
+  await page.click('#take')
+  await until(page, 'nobody may take over from a phone that was sent away', () => document.getElementById('viewer').hidden)
+  await ended(page)
+  for (const one of [page, phone, thief, viewer]) await one.context().close()
+  return took
+}
+
 const looks = async () => {
   for (const [width, height] of [[1280, 800], [820, 1100], [390, 844]]) {
     for (const theme of ['light', 'dark', 'room']) {
       const page = await opened(width, height)
       await page.evaluate(name => localStorage.setItem('theme', name), theme)
-      for (const view of ['', '#run', '#runs']) {
+      for (const view of ['', '#run', '#runs', '#compare=house,house-2', '#devices']) {
         await page.goto(address + view)
         await page.reload()
         await page.waitForTimeout(400)
+        if (view === '#devices') await page.click('#invite-viewer')
         await page.evaluate(axe)
         const { violations } = await page.evaluate(() => globalThis.axe.run())
         for (const v of violations) complaints.push(`${width} px, ${theme}, ${view || 'place'}: ${v.id}, ${v.nodes.length} times: ${v.nodes[0].html.slice(0, 120)}`)
@@ -261,9 +343,11 @@ await place()
 const stopped = await attend()
 const dark = await lost()
 await steps()
+await history()
+const far = await devices()
 await keys()
 await looks()
 await browser.close()
 for (const complaint of complaints) console.error(complaint)
 if (complaints.length) process.exit(1)
-console.log(`the studio was used: the house is traced ${took} s after a click, stopped ${stopped} ms after one on another page, dark ${dark} ms after its operator was lost`)
+console.log(`the studio was used: the house is traced ${took} s after a click, stopped ${stopped} ms after one on another page, ${far} ms after one on another device, dark ${dark} ms after its operator was lost`)

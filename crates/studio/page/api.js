@@ -9,7 +9,13 @@
  * @typedef {{ target: { width_m: number, height_m: number, corners_m: [number, number][] }, strokes: { count: number, length_m: number }, plan: { duration_s: number },
  *   head: { spot_mm: number, best_distance_m: number, distance_m: number }, sequence: Stroke[] }} PlanFigures
  * @typedef {{ id: number, command: string, plan: PlanFigures, remarks: string[], points: string }} Plan
- * @typedef {{ id: number, run: string, picture: string, stage: string, done: number, of: number, remarks: string[], over: boolean, live: boolean, answer: any, failure: Failure | null }} Job
+ * @typedef {{ id: number, run: string, picture: string, flags: Flags | null, stage: string, done: number, of: number, remarks: string[], over: boolean, live: boolean, answer: any, failure: Failure | null }} Job
+ * @typedef {{ id: string, folder: string, begun: string, picture: string | null, flags: Flags | null, files: { name: string, bytes: number }[], width_m: number, height_m: number, strokes: number, duration_s: number | null,
+ *   rms_mm: number | null, max_mm: number | null, finished: boolean, running: boolean, left: boolean, went_on_in: string | null, goes_on_with: string | null, progress: { stroke: number, strokes: number } | null }} RunTold
+ * @typedef {{ first: RunTold, second: RunTold, same_drawing: boolean, only_first_asked: string[], only_second_asked: string[], figures: { name: string, unit: string, digits: number, first: number | null, second: number | null, difference: number | null }[] }} Compared
+ * @typedef {{ id: number, name: string, role: 'operator' | 'viewer', lines: number, seen_s: number }} Device
+ * @typedef {{ role: 'operator' | 'viewer' | null, local: boolean, lan: { addresses: string[], fingerprint: string } | null, devices: Device[] | null }} Session
+ * @typedef {{ role: string, links: string[], code_svg: string | null, fingerprint: string, holds_s: number }} Invitation
  */
 
 /** A refusal, with what the program says about it. */
@@ -52,12 +58,27 @@ export const pictureUrl = (id) => `/api/v1/pictures/${encodeURIComponent(id)}`
 export const plan = (asked, signal) => post('/plans', asked, signal)
 /** @param {{ picture: string, flags: Flags }} asked @returns {Promise<Job>} */
 export const trace = (asked) => post('/jobs', asked)
-/** Begins a job that a page operates: dark, until somebody arms it. @param {{ page: string, picture: string, flags: Flags }} asked @returns {Promise<Job>} */
+/** Begins a job that a page operates: dark, until somebody arms it. @param {{ page: string, picture?: string, rest_of?: string, flags: Flags }} asked @returns {Promise<Job>} */
 export const attend = (asked) => post('/jobs', { ...asked, attended: true })
 /** @returns {Promise<Job | null>} */
 export const job = async () => (await json('/jobs/current')).job
 export const stop = () => post('/stop', {})
+/** @returns {Promise<RunTold[]>} */
 export const runs = async () => (await json('/runs')).runs
+/** @param {string} first @param {string} second @returns {Promise<Compared>} */
+export const compare = (first, second) => json(`/compare?first=${encodeURIComponent(first)}&second=${encodeURIComponent(second)}`)
+/** Puts something into the trash; its name there. @param {'runs' | 'pictures'} kind @param {string} id @returns {Promise<string>} */
+export const discard = async (kind, id) => (await json(`/${kind}/${encodeURIComponent(id)}`, { method: 'DELETE' })).in_trash
+/** @param {'runs' | 'pictures'} kind @param {string} name */
+export const restore = (kind, name) => post(`/trash/${kind}/${encodeURIComponent(name)}`, {})
+/** @returns {Promise<Session>} */
+export const session = () => json('/session')
+/** @param {string} invitation @param {string} name */
+export const join = (invitation, name) => post('/session/join', { invitation, name })
+/** @param {'operator' | 'viewer'} role @returns {Promise<Invitation>} */
+export const invite = (role) => post('/session/invitations', { role })
+/** @param {number} id */
+export const sendAway = (id) => json(`/session/devices/${id}`, { method: 'DELETE' })
 /** @param {string} run @param {string} name */
 export const runFile = (run, name) => `/api/v1/runs/${encodeURIComponent(run)}/files/${name}`
 

@@ -43,6 +43,12 @@ const GROUPS = [
   },
 ]
 
+/** What a message calls a flag is what the form calls its field. @param {string} text */
+export function asLabelled(text) {
+  const labels = new Map(GROUPS.flatMap((group) => group.fields.map((field) => [field.flag.replaceAll('_', '-'), field.label])))
+  return text.replace(/'?--([a-z][a-z-]*)( <[^>]*>)?'?/g, (all, flag) => (labels.has(flag) ? `“${labels.get(flag)}”` : all))
+}
+
 export class Fields {
   /** @param {HTMLFormElement} form @param {(flags: Flags) => void} changed */
   constructor(form, changed) {

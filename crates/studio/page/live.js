@@ -42,7 +42,7 @@ export class Live {
   }
 
   #connect() {
-    const socket = new WebSocket(`ws://${location.host}/api/v1/live?page=${this.page}`)
+    const socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/api/v1/live?page=${this.page}`)
     this.socket = socket
     socket.onopen = () => this.opened(true)
     socket.onmessage = (message) => this.told(JSON.parse(message.data))

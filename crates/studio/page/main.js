@@ -2,8 +2,11 @@
 /** The page: what is asked of whom, in which order. */
 
 import * as api from './api.js'
-import { Fields } from './fields.js'
-import { element, follow, showResult, showRuns } from './runs.js'
+import { Fields, asLabelled } from './fields.js'
+import { showCompared } from './compare.js'
+import { Devices, arrive } from './devices.js'
+import { keep, kept, themes } from './kept.js'
+import { Runs, element, follow, showResult } from './runs.js'
 import { Run } from './run.js'
 import { Store } from './store.js'
 import { Timeline } from './timeline.js'
@@ -18,11 +21,13 @@ const NUDGE_M = 1e-3
 const LOOK = 1000
 /** In how many seconds a drawing is played while it is traced. */
 const PLAYED_S = 6
-const THEMES = /** @type {const} */ ([['auto', '◐ Auto'], ['light', '○ Light'], ['dark', '● Dark'], ['room', '◍ Dark room']])
+const VIEWS = ['place', 'run', 'runs', 'compare', 'devices']
 
 /** @template {HTMLElement} T @param {string} id @returns {T} */
 const by = (id) => /** @type {T} */ (document.getElementById(id))
 const page = crypto.randomUUID()
+const session = await arrive().catch(() => null)
+const operates = session?.role === 'operator'
 const chosen = new URLSearchParams(location.hash.slice(1)).get('picture')
 const store = new Store(chosen ? { picture: chosen, flags: {} } : earlier())
 let folder = ''
@@ -77,10 +82,10 @@ function boxOf(flags) {
 
 const run = new Run(page, {
   asked: () => store.asked,
-  at: (share, lit) => {
-    wall.dark = share >= 0 && !lit
-    if (share < 0) timeline.rest()
-    else timeline.to(share)
+  at: (left_s, lit) => {
+    wall.dark = left_s >= 0 && !lit
+    if (left_s < 0) timeline.rest()
+    else timeline.to(left_s)
   },
   stroke: (number) => wall.upTo(number),
   mark: (at) => wall.marks(at),
@@ -88,6 +93,28 @@ const run = new Run(page, {
   problem,
   lamp,
 })
+
+run.operates = operates
+const devices = new Devices((error) => told('devices-problem', error))
+const runs = new Runs({
+  again: (of) => take_up(of, '#place'),
+  rest: (of) => {
+    take_up(of, '#run')
+    run.goOnWith(of)
+  },
+  from: (of, stroke) => {
+    take_up(of, '#run')
+    run.from(stroke)
+  },
+  problem: (error) => told('runs-problem', error),
+  operates,
+})
+
+/** Takes up what a run was asked, on the wall. @param {api.RunTold | api.Job} of @param {string} view */
+function take_up(of, view) {
+  if (of.picture) choose(of.picture, of.flags ?? {})
+  location.hash = view
+}
 
 let asked = 0
 let timer = 0
@@ -151,7 +178,7 @@ function show(made, points, flags) {
   by('command').textContent = made.command
   const remarks = by('remarks')
   remarks.hidden = made.remarks.length === 0
-  remarks.querySelector('ul')?.replaceChildren(...made.remarks.map((remark) => element('li', { text: remark })))
+  remarks.querySelector('ul')?.replaceChildren(...made.remarks.map((remark) => element('li', { text: asLabelled(remark) })))
   by('strokes').replaceChildren(...made.plan.sequence.slice(0, 500).map(row))
 }
 
@@ -161,18 +188,23 @@ function row(stroke) {
   return element('tr', {}, ...cells.map((text) => element('td', { text })))
 }
 
-/** Tells what went wrong, where it arises; null for nothing. @param {unknown} error */
+/** Tells what went wrong with what is on the wall; null for nothing. @param {unknown} error */
 function problem(error) {
-  const place = by('problem')
+  fields.blame(told('problem', error))
+}
+
+/** Tells what went wrong, where it arises; null for nothing. @param {string} where @param {unknown} error @returns {string} what was told */
+function told(where, error) {
+  const place = by(where)
   place.hidden = error === null
   place.replaceChildren()
-  if (error === null) return fields.blame('')
+  if (error === null) return ''
   const failure = error instanceof api.Refusal ? error.failure : { code: 'internal', message: String(error) }
   // names without the folder that they are in
-  place.append(element('strong', { text: failure.message.replaceAll(`${folder}/pictures/`, '') }))
+  place.append(element('strong', { text: asLabelled(failure.message).replaceAll(`${folder}/pictures/`, '').replaceAll(`${folder}/runs/`, '') }))
   // of a wrong value there is no more to be told than its message does
   if (failure.help && failure.code !== 'usage') place.append(element('p', { text: failure.help }))
-  fields.blame(failure.message)
+  return failure.message
 }
 
 /** Traces what is shown. */
@@ -224,7 +256,7 @@ function words(job) {
 function setTracing(is) {
   tracing = is
   // what cannot be planned cannot be traced
-  by('trace').toggleAttribute('disabled', is || plan === null || document.body.classList.contains('waits'))
+  by('trace').toggleAttribute('disabled', is || !operates || plan === null || document.body.classList.contains('waits'))
   if (!is) lamp('● Dark')
 }
 
@@ -261,14 +293,32 @@ async function take(file) {
   }
 }
 
-/** @param {string} picture */
-function choose(picture) {
+/** Puts a picture on the wall. @param {string} picture @param {api.Flags} [flags] */
+function choose(picture, flags) {
+  const { distance, rig } = store.asked.flags
+  // what was asked of one picture is not asked of another, but where the head stands
+  const next = { picture, flags: flags ?? { ...(distance ? { distance } : {}), ...(rig ? { rig } : {}) } }
+  if (JSON.stringify(next) === JSON.stringify(store.asked)) return
   problem(null)
   nothing()
   wall.first = true
-  // what was asked of one picture is not asked of another, but where the head stands
-  const { distance, rig } = store.asked.flags
-  store.set({ picture, flags: { ...(distance ? { distance } : {}), ...(rig ? { rig } : {}) } })
+  run.goOnWith(null)
+  store.set(next)
+}
+
+/** Deletes a picture; the one on the wall gives way to the house. @param {string} id */
+async function drop(id) {
+  try {
+    const name = await api.discard('pictures', id)
+    await list()
+    if (store.asked.picture === id) choose('house.png')
+    const undo = element('button', { type: 'button', class: 'plain', text: 'Undo' })
+    undo.addEventListener('click', () => api.restore('pictures', name).then(list).then(() => problem(null), problem))
+    by('problem').hidden = false
+    by('problem').replaceChildren(element('span', { text: `${id} is in the trash of the studio’s folder. ` }), undo)
+  } catch (error) {
+    problem(error)
+  }
 }
 
 async function list() {
@@ -278,27 +328,38 @@ async function list() {
       const button = element('button', { type: 'button', class: 'picture', title: picture.id, 'aria-pressed': String(picture.id === store.asked.picture) })
       button.append(picture.shows ? element('img', { src: api.pictureUrl(picture.id), alt: '', loading: 'lazy' }) : element('span', { class: 'kind', text: picture.id.split('.').pop() }), element('span', { text: picture.id }))
       button.addEventListener('click', () => choose(picture.id))
-      return element('li', {}, button)
+      if (picture.example || !operates) return element('li', {}, button)
+      const away = element('button', { type: 'button', class: 'away', text: '×', title: 'Delete', 'aria-label': `Delete ${picture.id}` })
+      away.addEventListener('click', () => drop(picture.id))
+      return element('li', { class: 'given' }, button, away)
     }),
   )
 }
 
 /** Shows the view that the address names. */
 function view() {
-  const runs = location.hash === '#runs'
-  const attends = location.hash === '#run'
-  by('place').hidden = runs
-  by('runs').hidden = !runs
+  const [named, more] = location.hash.slice(1).split('=')
+  const is = session?.role === null ? 'outside' : VIEWS.includes(named) ? named : 'place'
+  const attends = is === 'run'
+  by('place').hidden = is !== 'place' && !attends
+  for (const id of ['runs', 'compare', 'devices', 'outside']) by(id).hidden = is !== id
   by('placing').hidden = attends
   by('attend').hidden = !attends
   document.body.classList.toggle('attending', attends)
-  wall.fixed = attends
+  document.body.classList.toggle('looks-on', !operates)
+  wall.fixed = attends || !operates
   wall.dirty = true
-  for (const [id, is] of /** @type {[string, boolean][]} */ ([['to-place', !runs && !attends], ['to-run', attends], ['to-runs', runs]])) {
-    if (is) by(id).setAttribute('aria-current', 'page')
-    else by(id).removeAttribute('aria-current')
+  const current = is === 'compare' ? 'runs' : is
+  for (const id of ['place', 'run', 'runs', 'devices']) {
+    if (id === current) by(`to-${id}`).setAttribute('aria-current', 'page')
+    else by(`to-${id}`).removeAttribute('aria-current')
   }
-  if (runs) showRuns(by('run-list'), by('runs-where'), `${folder}/runs`).catch(problem)
+  devices.show(is === 'devices')
+  if (is === 'runs') runs.show(folder).catch((error) => told('runs-problem', error))
+  if (is === 'compare') {
+    const [first, second] = decodeURIComponent(more ?? '').split(',')
+    showCompared(first, second).then(() => told('compare-problem', null), (error) => told('compare-problem', error))
+  }
 }
 
 /** @param {KeyboardEvent} event */
@@ -335,34 +396,6 @@ function key(event) {
   if (event.key === '0') wall.fit()
 }
 
-/** @param {string} name */
-function theme(name) {
-  const at = THEMES.findIndex(([known]) => known === name)
-  const [known, label] = THEMES[Math.max(0, at)]
-  document.documentElement.dataset.theme = known
-  by('theme').textContent = label
-  keep('localStorage', 'theme', known)
-  wall.redraw()
-}
-
-/** Keeps a text in this browser; one that keeps nothing begins anew. @param {'localStorage' | 'sessionStorage'} where @param {string} name @param {string} text */
-function keep(where, name, text) {
-  try {
-    window[where].setItem(name, text)
-  } catch {
-    // it is shown all the same
-  }
-}
-
-/** What this browser has kept; null where it has nothing. @param {'localStorage' | 'sessionStorage'} where @param {string} name */
-function kept(where, name) {
-  try {
-    return window[where].getItem(name)
-  } catch {
-    return null
-  }
-}
-
 store.watch((asked) => {
   fields.show(asked.flags)
   // what was traced was another wish
@@ -389,10 +422,6 @@ by('zoom-out').addEventListener('click', () => wall.zoom(0.8))
 by('zoom-fit').addEventListener('click', () => wall.fit())
 by('undo').addEventListener('click', () => store.undo())
 by('redo').addEventListener('click', () => store.redo())
-by('theme').addEventListener('click', () => {
-  const at = THEMES.findIndex(([name]) => name === document.documentElement.dataset.theme)
-  theme(THEMES[(at + 1) % THEMES.length][0])
-})
 addEventListener('keydown', key)
 addEventListener('keyup', () => run.released())
 addEventListener('hashchange', view)
@@ -404,12 +433,22 @@ addEventListener('drop', (event) => {
 })
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => wall.redraw())
 
-theme(kept('localStorage', 'theme') ?? 'auto')
+themes(by('theme'), () => wall.redraw())
 fields.show(store.asked.flags)
 by('name').textContent = store.asked.picture
-planSoon(0)
-list().catch(problem)
-api.about().then((told) => (folder = told.folder)).then(view, problem)
+view()
+if (session?.role === null) {
+  document.body.classList.add('outside')
+  by('name').textContent = 'Tracelight'
+  // nobody tells this device
+  lamp('? Unknown')
+} else {
+  planSoon(0)
+  list().catch(problem)
+  api.about().then((told) => (folder = told.folder)).then(view, problem)
+  look()
+  setInterval(look, LOOK)
+}
 
 /** Looks whether somebody traces: another page, or this one before it was loaded again. */
 async function look() {
@@ -417,12 +456,11 @@ async function look() {
   const job = await api.job().catch(() => null)
   if (!job || job.over || tracing || run.on) return
   if (job.live) {
-    location.hash = '#run'
+    // what is drawn is on the wall, whoever asked for it
+    take_up(job, '#run')
     return run.followed()
   }
   setTracing(true)
   await followed()
   if (plan) problem(null)
 }
-look()
-setInterval(look, LOOK)

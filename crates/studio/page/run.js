@@ -2,6 +2,7 @@
 /** Somebody attends a job: before light, arming, and what may be asked while it is drawn. */
 
 import * as api from './api.js'
+import { asLabelled } from './fields.js'
 import { Hold } from './hold.js'
 import { Live } from './live.js'
 import { element, follow } from './runs.js'
@@ -13,13 +14,13 @@ const STALE = 400
 const ON = ['tracing', 'stepping', 'pointing', 'framing', 'returning', 'pausing']
 /** What states are called. @type {Record<string, string>} */
 const STATES = {
-  unhomed: 'It does not know where it points', ready: 'Ready, dark', parking: 'Goes to zero, dark', armed: 'Armed', framing: 'Shows the frame', tracing: 'Traces', stepping: 'Draws a stroke again and again',
+  unhomed: 'It does not know where it points', ready: 'Ready, dark', parking: 'Goes to zero, dark', armed: 'Armed', framing: 'Shows the frame', tracing: 'Traces', stepping: 'Draws it again and again',
   pointing: 'Marks a point', returning: 'Dark, on its way back to the stroke', pausing: 'Pauses after this stroke', paused: 'Paused, dark', stopped: 'Stopped, dark', done: 'Done, dark', fault: 'A fault: dark', lost: 'The head is gone',
 }
 
 /**
- * @typedef {{ asked: () => { picture: string, flags: api.Flags }, at: (share: number, lit: boolean) => void, stroke: (number: number) => void, mark: (at: [number, number] | null) => void, ended: (job: api.Job) => void, problem: (error: unknown) => void, lamp: (text: string, lit: boolean) => void }} Hooks
- *   what is shown; how far of the plan it is, 0 to 1, −1 for nowhere, and whether there is light; the stroke that is drawn again and again; the place that is marked; how it ended
+ * @typedef {{ asked: () => { picture: string, flags: api.Flags }, at: (left_s: number, lit: boolean) => void, stroke: (number: number) => void, mark: (at: [number, number] | null) => void, ended: (job: api.Job) => void, problem: (error: unknown) => void, lamp: (text: string, lit: boolean) => void }} Hooks
+ *   what is shown; how long of the plan is left, s, −1 for nowhere, and whether there is light; the stroke that is drawn again and again; the place that is marked; how it ended
  */
 
 /** @template {HTMLElement} T @param {string} id @returns {T} */
@@ -37,6 +38,12 @@ export class Run {
     this.mine = false
     this.mode = 'trace'
     this.framing = false
+    /** @type {api.RunTold | null} the run whose rest is to be drawn */
+    this.rest = null
+    /** Whether this device may operate anything. */
+    this.operates = true
+    /** @type {WakeLockSentinel | null} keeps a phone's screen on: one that sleeps stops the job */
+    this.awake = null
     /** A job was asked for, and has not begun. */
     this.begins = false
     this.state = ''
@@ -58,23 +65,42 @@ export class Run {
     by('clear').addEventListener('click', () => this.#ask('clear'))
     by('end').addEventListener('click', () => this.#ask('end'))
     by('take').addEventListener('click', () => this.#ask('take'))
+    by('whole').addEventListener('click', () => this.goOnWith(null))
     by('refuse').addEventListener('click', () => this.#refuse())
     by('faster').addEventListener('change', () => this.#ask(`speed=${Number(field('faster').value) / 100}`))
     by('faster').addEventListener('input', () => (by('percent').textContent = `${field('faster').value} %`))
     for (const radio of document.querySelectorAll('input[name=mode]')) radio.addEventListener('change', () => this.#modes())
     setInterval(() => this.#stale(), 100)
+    document.addEventListener('visibilitychange', () => this.#wake())
     this.#modes()
   }
 
-  /** The job to begin: its picture, and flags. */
+  /** Takes the rest of a run as what is to be drawn, or again the drawing as it is placed. @param {api.RunTold | null} run */
+  goOnWith(run) {
+    this.rest = run
+    this.#modes()
+  }
+
+  /** Begins at a stroke. @param {number} number */
+  from(number) {
+    this.goOnWith(null)
+    field('from-stroke').value = String(number)
+  }
+
+  /** The job to begin: its picture or run, and flags. */
   #flags() {
     const { picture, flags } = this.hooks.asked()
-    const asked = { ...flags }
+    /** @type {api.Flags} */
+    const how = {}
+    const times = field('times').value
+    if (times !== '1') how.real_time = times
+    if (field('frame').value !== '') how.frame = field('frame').value
+    if (this.rest) return { rest_of: this.rest.id, flags: how }
+    const asked = { ...flags, ...how }
     const mode = this.#mode()
     if (field('dry').checked) asked.dry_run = true
-    const times = field('times').value
-    if (times !== '1') asked.real_time = times
-    if (field('frame').value !== '') asked.frame = field('frame').value
+    const from = field('from-stroke').value.trim()
+    if (from !== '' && from !== '1') asked.from_stroke = from
     if (mode === 'step') asked.step = true
     if (mode === 'points') asked.points = 'all'
     if (mode !== 'trace' && field('pace').value.trim() !== '') asked.pace = field('pace').value.trim()
@@ -86,7 +112,11 @@ export class Run {
   }
 
   #modes() {
-    by('pace-row').hidden = this.#mode() === 'trace'
+    const { rest } = this
+    by('pace-row').hidden = this.#mode() === 'trace' || rest !== null
+    by('rest').hidden = rest === null
+    by('rest-words').textContent = rest ? `The rest of ${rest.id}${rest.progress ? `, from stroke ${rest.progress.stroke} of ${rest.progress.strokes}` : ''}, as it was asked then.` : ''
+    for (const id of ['modes', 'from-row', 'dry-row']) by(id).hidden = rest !== null
   }
 
   /** Begins a job, dark: it waits until somebody arms it. */
@@ -97,14 +127,14 @@ export class Run {
     this.begins = true
     enable('begin', false)
     try {
-      this.mode = this.#mode()
+      this.mode = this.rest ? 'trace' : this.#mode()
       this.#say('')
       by('checks').replaceChildren()
       this.live.open()
       await api.attend({ page: this.page, ...this.#flags() })
       this.#show()
       // on a phone what comes next is in view
-      setTimeout(() => by('arm').scrollIntoView({ block: 'center' }), 100)
+      setTimeout(() => scrollTo({ top: 0 }), 100)
       await this.followed()
     } catch (error) {
       this.hooks.problem(error)
@@ -127,6 +157,9 @@ export class Run {
     this.hooks.at(-1, false)
     this.hooks.mark(null)
     this.point = null
+    this.#wake()
+    // what was left is drawn, or another run has its rest
+    if (ended) this.goOnWith(null)
     if (ended) this.hooks.ended(ended)
   }
 
@@ -160,8 +193,22 @@ export class Run {
     this.arm.cancel()
   }
 
+  /** Keeps the screen on as long as this page operates a job, where the browser can. */
+  async #wake() {
+    const wanted = this.on && this.mine && document.visibilityState === 'visible'
+    try {
+      if (!wanted) {
+        await this.awake?.release()
+        this.awake = null
+      } else if (!this.awake || this.awake.released) this.awake = (await navigator.wakeLock?.request('screen')) ?? null
+    } catch {
+      // one that sleeps is missed, and dark
+    }
+  }
+
   /** @param {string} wish */
   #ask(wish) {
+    navigator.vibrate?.(30)
     if (!this.live.wish(wish)) this.hooks.problem(new api.Refusal({ code: 'gone', message: 'There is no line to the job: it is dark by itself within two seconds.' }, 0))
   }
 
@@ -180,7 +227,8 @@ export class Run {
     if (told.event === 'live' || told.event === 'begun' || told.event === 'operator') {
       const operator = told.operator ?? told.page
       this.on = told.event !== 'live' || told.on
-      this.mine = this.live.operates = this.on && operator === this.page
+      this.mine = this.live.operates = this.on && this.operates && operator === this.page
+      this.#wake()
       by('asks').hidden = true
       if (told.event === 'begun') {
         // nothing of the one before holds
@@ -229,7 +277,7 @@ export class Run {
   #place() {
     const { now } = this
     if (this.framing || !(now.of_s > 0)) this.hooks.at(-1, false)
-    else if (this.mode === 'trace') this.hooks.at(now.plan_s / now.of_s, now.gate)
+    else if (this.mode === 'trace') this.hooks.at(now.of_s - now.plan_s, now.gate)
     else if (this.mode === 'step' && now.stroke) this.hooks.stroke(now.stroke)
     else this.hooks.at(-1, false)
   }
@@ -251,8 +299,9 @@ export class Run {
     if (this.framing) return 'The frame, again and again'
     if (this.mode === 'points') return point ? `${point.kind} ${point.point} of ${point.points} · ${plain(point.x_mm, 0)}, ${plain(point.y_mm, 0)} mm` : ''
     const stroke = now.strokes > 0 && now.stroke ? `stroke ${now.stroke} of ${now.strokes}` : ''
+    const of = this.rest ? ' of the rest' : ''
     const at = now.of_s > 0 && this.mode === 'trace' ? `${time(now.plan_s)} of ${time(now.of_s)}` : ''
-    return [stroke, at].filter(Boolean).join(' · ')
+    return [stroke + of, at].filter(Boolean).join(' · ')
   }
 
   #show() {
@@ -262,6 +311,7 @@ export class Run {
     const lit = on && now.gate === true
     by('before').hidden = on
     by('during').hidden = !on
+    document.body.classList.toggle('drawing', on)
     if (!on) return
     const left = armed ? ` ${Math.ceil(now.armed_s ?? 0)} s` : ''
     this.hooks.lamp(lit ? '☀ Light' : armed ? `◔ Armed${left}` : '● Dark', lit)
@@ -289,6 +339,8 @@ export class Run {
       by('percent').textContent = `${plain(100 * now.speed, 0)} %`
     }
     by('viewer').hidden = mine
+    by('take').hidden = !this.operates
+    by('viewer-words').textContent = this.operates ? 'Another page operates it. You may stop it.' : 'This device looks on. You may stop it.'
   }
 }
 
@@ -302,5 +354,5 @@ function enable(id, can) {
 /** A line of what was looked at before light. @param {{ name: string, verdict: string, words: string }} of */
 function check(of) {
   const mark = { passed: '✓', warned: '⚠', refused: '✕' }[of.verdict] ?? '?'
-  return element('li', { class: of.verdict }, element('span', { class: 'mark', text: mark, 'aria-label': of.verdict }), element('span', { text: of.words }))
+  return element('li', { class: of.verdict }, element('span', { class: 'mark', text: mark, 'aria-label': of.verdict }), element('span', { text: asLabelled(of.words) }))
 }

@@ -39,10 +39,11 @@ export class Timeline {
     this.at(-1)
   }
 
-  /** Shows how far a job is. @param {number} share of the plan, 0 to 1 */
-  to(share) {
+  /** Shows how far a job is, which may have begun anywhere. @param {number} left_s time of the plan that is left, s */
+  to(left_s) {
     this.#stop()
-    if (this.rows > 1) this.#set(Math.round(share * (this.rows - 1)))
+    if (this.rows < 2 || !(this.seconds > 0)) return
+    this.#set(Math.round(Math.min(1, Math.max(0, 1 - left_s / this.seconds)) * (this.rows - 1)))
   }
 
   toggle() {

@@ -57,3 +57,9 @@ export function time(s) {
   const all = Math.round(s)
   return s < 59.95 ? `${plain(s, 1)} s` : `${Math.floor(all / 60)} min ${all % 60} s`
 }
+
+/** Bytes for people. @param {number} bytes */
+export function size(bytes) {
+  if (bytes < 1e4) return `${bytes} B`
+  return bytes < 1e6 ? `${plain(bytes / 1e3, 0)} kB` : `${plain(bytes / 1e6, 1)} MB`
+}

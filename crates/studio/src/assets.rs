@@ -28,7 +28,7 @@ macro_rules! script {
 }
 
 /// The page first.
-pub(crate) static ASSETS: [Asset; 15] = [
+pub(crate) static ASSETS: [Asset; 18] = [
     asset!("index.html", "text/html; charset=utf-8"),
     asset!("style.css", "text/css; charset=utf-8"),
     asset!("icon.svg", "image/svg+xml"),
@@ -44,6 +44,9 @@ pub(crate) static ASSETS: [Asset; 15] = [
     script!("live.js"),
     script!("hold.js"),
     script!("words.js"),
+    script!("kept.js"),
+    script!("devices.js"),
+    script!("compare.js"),
 ];
 
 /// A file in both forms, and what tells one version from another.

@@ -42,8 +42,27 @@ struct Job {
     work: Arc<Work>,
     run: String,
     picture: String,
+    /// The flags of what is drawn.
+    flags: Value,
     /// Whether pages attend it.
     live: bool,
+}
+
+/// A job that somebody asks for.
+pub(crate) struct Wanted<'a> {
+    pub(crate) subject: Subject<'a>,
+    pub(crate) flags: &'a Map<String, Value>,
+    /// The page that operates it, if one does.
+    pub(crate) operator: Option<&'a str>,
+}
+
+/// What is to be drawn.
+#[derive(Clone, Copy)]
+pub(crate) enum Subject<'a> {
+    /// A picture, by its id.
+    Picture(&'a str),
+    /// What a run has left, by its id.
+    RestOf(&'a str),
 }
 
 fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -150,21 +169,45 @@ impl Desk {
         locked(&self.plans).iter().find(|(known, _)| *known == id).map(|(_, bytes)| bytes.clone())
     }
 
-    /// Begins to trace a picture on the simulated rig, as fast as that can or, where a page operates it, by the clock; what is to be run then.
+    /// The command of a job, and what is drawn by it.
+    fn job_command(&self, wanted: &Wanted<'_>) -> Result<(Vec<String>, String, Value), Failure> {
+        let Wanted { subject, flags, operator } = wanted;
+        let (mut command, picture, drawn) = match subject {
+            Subject::Picture(picture) => {
+                let which = if operator.is_some() { Which::Attended } else { Which::Drawing };
+                let drawn = flags.iter().filter(|(name, _)| Which::Drawing.has(name));
+                let drawn: Map<String, Value> =
+                    drawn.map(|(name, value)| (name.clone(), value.clone())).collect();
+                (self.command("trace", picture, flags, which)?, (*picture).to_owned(), json!(drawn))
+            }
+            Subject::RestOf(run) => {
+                let none = || {
+                    Failure::usage("unreadable", format!("there is no run {run:?} in the studio's folder"))
+                };
+                let told = self.run(run)?.ok_or_else(none)?;
+                let dir = self.folder.run(run).ok_or_else(none)?;
+                let mut command = vec!["resume".to_owned(), dir.to_string_lossy().into_owned()];
+                command.extend(arguments(flags, Which::Rest, &[])?);
+                let picture = told["picture"].as_str().unwrap_or("picture.png").to_owned();
+                (command, picture, told["flags"].clone())
+            }
+        };
+        if operator.is_some() && !command.iter().any(|argument| argument.starts_with("--real-time")) {
+            command.push("--real-time=1".to_owned());
+        }
+        Ok((command, picture, drawn))
+    }
+
+    /// Begins to trace a picture, or the rest of a run, on the simulated rig, as fast as that can or, where a page operates it, by the clock; what is to be run then.
     ///
     /// # Errors
     /// `busy` while another one is; what is wrong with the flags.
     pub(crate) fn trace(
         self: &Arc<Self>,
-        picture: &str,
-        flags: &Map<String, Value>,
-        operator: Option<&str>,
+        wanted: &Wanted<'_>,
     ) -> Result<(Value, impl FnOnce() + Send + use<>), Failure> {
-        let which = if operator.is_some() { Which::Attended } else { Which::Drawing };
-        let mut command = self.command("trace", picture, flags, which)?;
-        if operator.is_some() && !command.iter().any(|argument| argument.starts_with("--real-time")) {
-            command.push("--real-time=1".to_owned());
-        }
+        let (mut command, picture, flags) = self.job_command(wanted)?;
+        let operator = wanted.operator;
         let work = self.work();
         {
             let mut job = locked(&self.job);
@@ -172,13 +215,17 @@ impl Desk {
                 let message = "a picture is being traced: stop it, or wait until it is done";
                 return Err(Failure::failed("busy", message));
             }
-            let live = operator.is_some();
-            *job =
-                Some(Job { work: Arc::clone(&work), run: String::new(), picture: picture.to_owned(), live });
+            *job = Some(Job {
+                work: Arc::clone(&work),
+                run: String::new(),
+                picture: picture.clone(),
+                flags,
+                live: operator.is_some(),
+            });
         }
         // from here on it ends, whatever becomes of it
         let last = AtLast(Arc::clone(&work));
-        let (run, dir) = self.folder.begin_run(picture)?;
+        let (run, dir) = self.folder.begin_run(&picture)?;
         if let Some(job) = locked(&self.job).as_mut() {
             job.run = run;
         }
@@ -195,6 +242,8 @@ impl Desk {
                 let failure = performed.failure.clone();
                 Ok(Ended { answer: json_of(performed)?, failure })
             });
+            // what failed before there was anything to keep leaves no folder
+            desk.folder.drop_empty(&dir);
             // before another one may begin
             drop(live);
             work.end(done.unwrap_or_else(|failure| Ended { answer: Value::Null, failure: Some(failure) }));
@@ -208,6 +257,7 @@ impl Desk {
             let mut told = job.work.json();
             told["run"] = json!(job.run);
             told["picture"] = json!(job.picture);
+            told["flags"] = job.flags;
             told["live"] = json!(job.live);
             told
         })

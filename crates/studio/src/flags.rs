@@ -46,11 +46,23 @@ pub(crate) enum Which {
     Drawing,
     /// Likewise, and how somebody attends it.
     Attended,
+    /// The rest of a run: what is drawn is as it was asked then.
+    Rest,
 }
 
 impl Which {
-    fn has(self, name: &str) -> bool {
-        FLAGS.contains(&name) || (self == Self::Attended && ATTENDED.contains(&name))
+    /// How many there are in all.
+    #[cfg(test)]
+    pub(crate) const fn count() -> usize {
+        FLAGS.len() + ATTENDED.len()
+    }
+
+    pub(crate) fn has(self, name: &str) -> bool {
+        match self {
+            Self::Drawing => FLAGS.contains(&name),
+            Self::Attended => FLAGS.contains(&name) || ATTENDED.contains(&name),
+            Self::Rest => ["real_time", "frame"].contains(&name),
+        }
     }
 }
 
@@ -71,6 +83,9 @@ pub(crate) fn arguments(
     let mut arguments = Vec::new();
     for (name, value) in flags {
         if !which.has(name) {
+            if which == Which::Rest && Which::Attended.has(name) {
+                return Err(refused(format!("{name} is as it was when the run was begun: leave it out")));
+            }
             let near =
                 nearest(name, FLAGS).map_or_else(String::new, |near| format!("; did you mean {near}?"));
             return Err(refused(format!("{name} is no flag that the studio takes{near}")));
@@ -106,6 +121,37 @@ fn argument(flag: &str, value: &Value, rigs: &[String]) -> Result<Option<String>
     Ok((!text.is_empty()).then(|| format!("--{flag}={text}")))
 }
 
+/// The picture's path and the flags of a command line that [`arguments`] has made, as a page asks for them; `None` of another one, which no page can ask for.
+pub(crate) fn asked_by(command: &[String]) -> Option<(&str, Map<String, Value>)> {
+    let [name, picture, rest @ ..] = command else { return None };
+    let mut flags = Map::new();
+    let mut rest = rest.iter();
+    while let Some(argument) = rest.next() {
+        let flag = argument.strip_prefix("--")?;
+        let (flag, value) = flag.split_once('=').map_or((flag, None), |(flag, value)| (flag, Some(value)));
+        let flag = flag.replace('-', "_");
+        match flag.as_str() {
+            "out" if value.is_none() => drop(rest.next()?),
+            "json" => {}
+            _ if Which::Drawing.has(&flag) => put(&mut flags, flag, value),
+            // how somebody attended it is chosen anew
+            _ if Which::Attended.has(&flag) => {}
+            _ => return None,
+        }
+    }
+    (name == "trace").then_some((picture.as_str(), flags))
+}
+
+/// Puts a flag in: one that is there becomes a list.
+fn put(flags: &mut Map<String, Value>, flag: String, value: Option<&str>) {
+    let value = value.map_or(Value::Bool(true), Value::from);
+    match flags.get_mut(&flag) {
+        None => drop(flags.insert(flag, value)),
+        Some(Value::Array(values)) => values.push(value),
+        Some(first) => *first = Value::Array(vec![first.take(), value]),
+    }
+}
+
 fn refused(message: String) -> Failure {
     Failure::usage("usage", message)
 }
@@ -135,6 +181,25 @@ mod tests {
             typed(&["plan".to_owned(), "--layer=b c".to_owned(), "it's".to_owned()]),
             r"tracelight plan '--layer=b c' 'it'\''s'"
         );
+    }
+
+    #[test]
+    fn a_run_is_asked_for_again_by_its_command() {
+        let asked = json!({ "width": "3 m", "flip": true, "layer": ["a", "b=c"], "lit_speed": "exact" });
+        let mut command = vec!["trace".to_owned(), "/x/house.png".to_owned()];
+        command.extend(of(asked.clone()).unwrap());
+        command.extend(
+            ["--real-time=1", "--from-stroke=3", "--out", "/x/runs/house", "--json"].map(str::to_owned),
+        );
+        let (picture, flags) = asked_by(&command).unwrap();
+        assert_eq!((picture, Value::Object(flags)), ("/x/house.png", asked));
+        // of a terminal's own
+        for other in
+            [&["plan", "x.png"][..], &["trace", "x.png", "--seed=3"], &["trace", "x.png", "-o"], &["trace"]]
+        {
+            let other: Vec<String> = other.iter().map(|&word| word.to_owned()).collect();
+            assert!(asked_by(&other).is_none(), "{other:?}");
+        }
     }
 
     #[test]

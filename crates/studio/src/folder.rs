@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
 use serde_json::{Value, json};
 use tracelight_files as files;
 use tracelight_task::Failure;
@@ -30,13 +31,18 @@ const KINDS: [(&str, &str); 15] = [
 /// Those that browsers show.
 const SHOWN: [&str; 7] = ["png", "jpg", "jpeg", "webp", "bmp", "gif", "svg"];
 /// What of a run a page may show.
-const RUN_KINDS: [(&str, &str); 5] = [
+const RUN_KINDS: [(&str, &str); 8] = [
     ("html", "text/html; charset=utf-8"),
     ("png", "image/png"),
     ("svg", "image/svg+xml"),
     ("json", "application/json"),
     ("csv", "text/csv"),
+    ("jpg", "image/jpeg"),
+    ("toml", "text/plain; charset=utf-8"),
+    ("mcap", "application/octet-stream"),
 ];
+/// Where what was deleted lies, until somebody empties it.
+const TRASH: &str = "trash";
 /// Longest name of a picture, without its end.
 const MOST_LETTERS: usize = 60;
 
@@ -142,6 +148,12 @@ impl Folder {
         (id == format!("{stem}.{kind}") && path.is_file()).then_some(path)
     }
 
+    /// The id of a picture by its path; `None` of one that lies elsewhere, or is gone.
+    pub(crate) fn id_of(&self, path: &str) -> Option<String> {
+        let id = Path::new(path).file_name()?.to_str()?;
+        (self.picture(id)? == Path::new(path)).then(|| id.to_owned())
+    }
+
     /// A picture's bytes and their type.
     pub(crate) fn picture_bytes(&self, id: &str) -> Option<(Vec<u8>, &'static str)> {
         let (_, kind) = parted(id)?;
@@ -180,17 +192,132 @@ impl Folder {
         Ok((id, dir))
     }
 
-    /// A file of a run and its type; `None` where there is none that a page may show.
-    pub(crate) fn run_file(&self, run: &str, name: &str) -> Option<(Vec<u8>, &'static str)> {
-        let plain = |text: &str| {
-            !text.starts_with('.') && text.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c))
-        };
-        let (_, kind) = name.rsplit_once('.')?;
-        let (_, of_kind) = RUN_KINDS.iter().find(|(known, _)| *known == kind)?;
-        let is_run = plain(run) && plain(name);
-        let bytes = is_run.then(|| fs::read(self.runs().join(run).join(name)).ok())??;
-        Some((bytes, of_kind))
+    /// Removes the folder of a run in which nothing was written.
+    pub(crate) fn drop_empty(&self, dir: &Path) {
+        // one that holds something stays
+        let _ = fs::remove_dir(dir);
     }
+
+    /// A run's folder; `None` where there is none of that id.
+    pub(crate) fn run(&self, id: &str) -> Option<PathBuf> {
+        let dir = self.runs().join(id);
+        (is_plain(id) && dir.is_dir()).then_some(dir)
+    }
+
+    /// A file of a run, opened, with its type; `None` where there is none that a page may show.
+    pub(crate) fn run_file(&self, run: &str, name: &str) -> Option<(fs::File, &'static str)> {
+        let of_kind = run_kind(name)?;
+        let path = self.run(run)?.join(name);
+        // links lead out of the folder
+        let is_own = is_plain(name) && fs::symlink_metadata(&path).is_ok_and(|meta| meta.is_file());
+        Some((is_own.then(|| fs::File::open(path).ok())??, of_kind))
+    }
+
+    /// Names and bytes of a run's files that a page may show.
+    pub(crate) fn run_files(&self, run: &str) -> Vec<Value> {
+        let entries = self.run(run).and_then(|dir| fs::read_dir(dir).ok());
+        let told = |entry: fs::DirEntry| {
+            let name = entry.file_name().into_string().ok()?;
+            let meta = entry.metadata().ok().filter(fs::Metadata::is_file)?;
+            (is_plain(&name) && run_kind(&name).is_some())
+                .then(|| json!({ "name": name, "bytes": meta.len() }))
+        };
+        let mut all: Vec<Value> = entries.into_iter().flatten().flatten().filter_map(told).collect();
+        all.sort_by_key(|file| file["name"].as_str().map(str::to_owned));
+        all
+    }
+
+    /// Puts a run or a picture into the trash; the name by which it is taken out again.
+    ///
+    /// # Errors
+    /// `unreadable` where there is none; `busy` while a run is written; `usage` of an example, which would come back; `cannot-write`.
+    pub(crate) fn discard(&self, kind: Kind, id: &str) -> Result<String, Failure> {
+        let found = match kind {
+            Kind::Runs => self.run(id),
+            Kind::Pictures => self.picture(id),
+        };
+        let Some(path) = found else {
+            return Err(Failure::usage(
+                "unreadable",
+                format!("there is no {id:?} among the studio's {}", kind.word()),
+            ));
+        };
+        if kind == Kind::Pictures && EXAMPLES.iter().any(|(name, _)| *name == id) {
+            return Err(Failure::usage(
+                "usage",
+                format!("{id} is an example: it would be there again at the next start"),
+            ));
+        }
+        if kind == Kind::Runs && files::ResultFolder::hold(&path).is_err() {
+            return Err(Failure::failed(
+                "busy",
+                format!("{id} is being written: stop it, or wait until it is done"),
+            ));
+        }
+        let trash = self.dir.join(TRASH).join(kind.word());
+        fs::create_dir_all(&trash).map_err(|e| cannot_write(&trash, &e))?;
+        for number in 1..=9999 {
+            let name = if number == 1 { id.to_owned() } else { format!("{id}~{number}") };
+            if !trash.join(&name).exists() {
+                return fs::rename(&path, trash.join(&name))
+                    .map(|()| name)
+                    .map_err(|e| cannot_write(&path, &e));
+            }
+        }
+        Err(Failure::failed("cannot-write", format!("{} is full: empty it", trash.display())))
+    }
+
+    /// Takes something out of the trash again; its id.
+    ///
+    /// # Errors
+    /// `unreadable` where it is not there; `busy` where another one has its place now; `cannot-write`.
+    pub(crate) fn restore(&self, kind: Kind, name: &str) -> Result<String, Failure> {
+        let id = name.split('~').next().unwrap_or_default();
+        let from = self.dir.join(TRASH).join(kind.word()).join(name);
+        let is_own = is_plain(id) && name.chars().all(|c| c == '~' || is_letter(c));
+        if !is_own || !from.exists() {
+            return Err(Failure::usage("unreadable", format!("there is no {name:?} in the studio's trash")));
+        }
+        let to = self.dir.join(kind.word()).join(id);
+        if to.exists() {
+            return Err(Failure::failed(
+                "busy",
+                format!("there is another {id} now: what is in the trash stays there"),
+            ));
+        }
+        fs::rename(&from, &to).map(|()| id.to_owned()).map_err(|e| cannot_write(&to, &e))
+    }
+}
+
+/// What lies in the folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Kind {
+    Pictures,
+    Runs,
+}
+
+impl Kind {
+    const fn word(self) -> &'static str {
+        match self {
+            Self::Pictures => "pictures",
+            Self::Runs => "runs",
+        }
+    }
+}
+
+/// Whether a name is one of this folder alone: nothing that leads elsewhere, and no hidden one.
+fn is_plain(name: &str) -> bool {
+    !name.is_empty() && !name.starts_with('.') && name.chars().all(is_letter)
+}
+
+fn is_letter(c: char) -> bool {
+    c.is_ascii_alphanumeric() || "-_.".contains(c)
+}
+
+fn run_kind(name: &str) -> Option<&'static str> {
+    let (_, kind) = name.rsplit_once('.')?;
+    RUN_KINDS.iter().find(|(known, _)| *known == kind).map(|(_, of_kind)| *of_kind)
 }
 
 /// A name without folders as letters, digits, - and _, and how it ends; `None` of what ends as no picture does.

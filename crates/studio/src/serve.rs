@@ -1,26 +1,47 @@
-//! The server as a whole: a port, a folder, and its end.
+//! The server as a whole: its doors, a folder, and its end.
 
-use std::future::IntoFuture as _;
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use tokio_rustls::TlsAcceptor;
 use tracelight_task::{Failure, Stop};
 
 use crate::desk::Desk;
+use crate::devices::{Devices, Role};
+use crate::door;
 use crate::folder::Folder;
+use crate::guard::Door;
+use crate::house::House;
+use crate::lan::{self, Lan};
 use crate::program::Program;
 use crate::server::router;
+use crate::session::links;
 
 /// How often is looked whether it is to end.
 const LOOK: Duration = Duration::from_millis(50);
+/// Connections at once: of this computer, and of the network, whose devices take no room from it.
+const MOST_LOCAL: usize = 512;
+const MOST_LAN: usize = 256;
 
-/// A studio whose port is open.
+/// A studio whose doors are open.
 pub struct Studio {
     listener: TcpListener,
     port: u16,
-    desk: Arc<Desk>,
+    network: Option<(TcpListener, TlsAcceptor)>,
+    house: House,
+}
+
+/// What a device of the network joins by.
+#[derive(Clone, Debug)]
+pub struct Invitation {
+    /// The address, by the likeliest name of this computer; it holds for one device, ten minutes.
+    pub link: String,
+    /// A code for cameras that says so, in letters of a terminal, light on dark.
+    pub code: String,
+    /// Of the server's certificate, SHA-256.
+    pub fingerprint: String,
 }
 
 impl std::fmt::Debug for Studio {
@@ -29,12 +50,31 @@ impl std::fmt::Debug for Studio {
     }
 }
 
-/// Opens a port of this computer, 0 for any that is free, and a folder, which is made.
+/// Opens a port of this computer, 0 for any that is free, and a folder, which is made. With `on_lan` the next port is open too, to devices of the network that are
+/// invited, in private.
 ///
 /// # Errors
-/// `port` where it is another program's; `cannot-write` where the folder cannot be made.
-pub fn open(port: u16, folder: &Path, program: Box<dyn Program>) -> Result<Studio, Failure> {
-    let at = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
+/// `port` where it is another program's; `cannot-write` where the folder cannot be made; `certificate`.
+pub fn open(port: u16, on_lan: bool, folder: &Path, program: Box<dyn Program>) -> Result<Studio, Failure> {
+    let (listener, port) = listen(Ipv4Addr::LOCALHOST, port)?;
+    let folder = Folder::open(folder)?;
+    let (network, lan) = if on_lan {
+        let (private, fingerprint) = lan::private(folder.dir())?;
+        // the next one, so that it is the same another time; where that is taken, any
+        let next = port.checked_add(1).unwrap_or(0);
+        let (listener, port) =
+            listen(Ipv4Addr::UNSPECIFIED, next).or_else(|_| listen(Ipv4Addr::UNSPECIFIED, 0))?;
+        (Some((listener, private)), Some(Arc::new(Lan { port, fingerprint })))
+    } else {
+        (None, None)
+    };
+    let house =
+        House { desk: Arc::new(Desk::new(program, folder)), devices: Arc::new(Devices::default()), lan };
+    Ok(Studio { listener, port, network, house })
+}
+
+fn listen(address: Ipv4Addr, port: u16) -> Result<(TcpListener, u16), Failure> {
+    let at = SocketAddr::from((address, port));
     let cannot = |e: std::io::Error| {
         let message = format!(
             "cannot listen at {at}: {e}; is a studio open already? --port 0 takes any port that is free"
@@ -44,7 +84,7 @@ pub fn open(port: u16, folder: &Path, program: Box<dyn Program>) -> Result<Studi
     let listener = TcpListener::bind(at).map_err(cannot)?;
     listener.set_nonblocking(true).map_err(cannot)?;
     let port = listener.local_addr().map_err(cannot)?.port();
-    Ok(Studio { listener, port, desk: Arc::new(Desk::new(program, Folder::open(folder)?)) })
+    Ok((listener, port))
 }
 
 impl Studio {
@@ -54,12 +94,23 @@ impl Studio {
         format!("http://127.0.0.1:{}/", self.port)
     }
 
+    /// Invites a device of the network to operate it; nothing where it is open to none.
+    ///
+    /// # Errors
+    /// `internal` where this computer gives no random numbers.
+    pub fn invite(&self) -> Result<Option<Invitation>, Failure> {
+        let Some(lan) = &self.house.lan else { return Ok(None) };
+        let link = links(lan, &self.house.devices, Role::Operator)?.remove(0);
+        let code = lan::code_text(&link).unwrap_or_default();
+        Ok(Some(Invitation { link, code, fingerprint: lan.fingerprint.clone() }))
+    }
+
     /// Takes a picture in, to be shown first; its id.
     ///
     /// # Errors
     /// `not-a-picture` by its name; `cannot-write`.
     pub fn add(&self, name: &str, bytes: &[u8]) -> Result<String, Failure> {
-        self.desk.folder.add(name, bytes)
+        self.house.desk.folder.add(name, bytes)
     }
 
     /// Answers until it is stopped, or for so long, s; what is traced then is stopped first.
@@ -75,14 +126,18 @@ impl Studio {
             .map_err(failed)?;
         // who ends it waits until what is traced is dark, and its results are whole
         let _kept = stop.keep();
-        let (desk, stop) = (Arc::clone(&self.desk), stop.clone());
+        let (desk, stop) = (Arc::clone(&self.house.desk), stop.clone());
         let done = runtime.block_on(async move {
-            let listener = tokio::net::TcpListener::from_std(self.listener)?;
-            let server = axum::serve(listener, router(self.desk, self.port)).into_future();
-            tokio::select! {
-                ended = server => ended,
-                () = wanted(&stop, lasts_s) => Ok(()),
+            let Self { listener, port, network, house } = self;
+            let own = tokio::net::TcpListener::from_std(listener)?;
+            drop(tokio::spawn(door::serve(own, None, router(house.clone(), Door::Local(port)), MOST_LOCAL)));
+            if let Some((listener, private)) = network {
+                let listener = tokio::net::TcpListener::from_std(listener)?;
+                let by = Door::Lan(lan::names().into(), Arc::clone(&house.devices));
+                drop(tokio::spawn(door::serve(listener, Some(private), router(house, by), MOST_LAN)));
             }
+            wanted(&stop, lasts_s).await;
+            Ok(())
         });
         desk.close();
         // who is stopped ends soon, with its results whole

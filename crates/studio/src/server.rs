@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use axum::body::Bytes;
 use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{DefaultBodyLimit, Path, Query, State};
+use axum::extract::{DefaultBodyLimit, Extension, Path, Query, State};
 use axum::http::header::{
     ACCEPT_ENCODING, CACHE_CONTROL, CONTENT_ENCODING, CONTENT_SECURITY_POLICY, CONTENT_TYPE, ETAG,
     IF_NONE_MATCH, VARY,
@@ -12,27 +12,33 @@ use axum::http::header::{
 use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
-use axum::routing::{get, post};
+use axum::routing::{delete, get, post};
 use axum::{Json, Router};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use tokio::task::spawn_blocking;
-use tracelight_task::{Failure, Status};
+use tracelight_task::Failure;
 
 use crate::assets::packed;
-use crate::desk::Desk;
-use crate::folder::{EXAMPLES, MOST_BYTES};
-use crate::guard::{Port, SHOWN, guard};
+use crate::desk::{Desk, Subject, Wanted};
+use crate::devices::Caller;
+use crate::folder::{EXAMPLES, Kind, MOST_BYTES};
+use crate::guard::{Door, SHOWN, guard};
+use crate::house::House;
+use crate::refused::Refused;
+use crate::sent::sent;
+use crate::session;
 use crate::socket::{MOST_MESSAGE, ask, serve_socket, watch_operator};
-use crate::tasks::{broken, failure_json};
+use crate::tasks::broken;
 
-/// Everything there is, for a server at that port.
-pub(crate) fn router(desk: Arc<Desk>, port: u16) -> Router {
+/// Everything there is, for who comes in by that door.
+pub(crate) fn router(house: House, door: Door) -> Router {
     let api = Router::new()
         .route("/about", get(about))
+        .route("/openapi.json", get(openapi))
         .route("/explain/{code}", get(explain))
         .route("/pictures", get(pictures).post(add).layer(DefaultBodyLimit::max(MOST_BYTES)))
-        .route("/pictures/{id}", get(picture))
+        .route("/pictures/{id}", get(picture).delete(discard_picture))
         .route("/plans", post(plan))
         .route("/plans/{id}/points", get(points))
         .route("/jobs", post(trace))
@@ -40,8 +46,15 @@ pub(crate) fn router(desk: Arc<Desk>, port: u16) -> Router {
         .route("/jobs/current/wishes", post(wish))
         .route("/live", get(live))
         .route("/stop", post(stop))
+        .route("/session", get(session::told))
+        .route("/session/join", post(session::join))
+        .route("/session/invitations", post(session::invite))
+        .route("/session/devices/{id}", delete(session::send_away))
         .route("/runs", get(runs))
-        .route("/runs/{run}/files/{name}", get(run_file));
+        .route("/runs/{run}", get(one_run).delete(discard_run))
+        .route("/runs/{run}/files/{name}", get(run_file))
+        .route("/trash/{kind}/{name}", post(restore))
+        .route("/compare", get(compare));
     Router::new()
         .route("/", get(|headers: HeaderMap| async move { asset("index.html", &headers) }))
         .route(
@@ -49,31 +62,10 @@ pub(crate) fn router(desk: Arc<Desk>, port: u16) -> Router {
             get(|Path(name): Path<String>, headers: HeaderMap| async move { asset(&name, &headers) }),
         )
         .nest("/api/v1", api)
-        .fallback(|| async { missing("page") })
+        .fallback(|| async { Refused::missing("page").into_response() })
         .layer(DefaultBodyLimit::max(1 << 16))
-        .layer(from_fn_with_state(Port(port), guard))
-        .with_state(desk)
-}
-
-/// A failure as the command line's `--json` has it.
-struct Refused(Failure);
-
-impl IntoResponse for Refused {
-    fn into_response(self) -> Response {
-        let Self(failure) = self;
-        let status = match (failure.code, failure.status) {
-            ("busy", _) => StatusCode::CONFLICT,
-            (_, Status::Usage) => StatusCode::BAD_REQUEST,
-            (_, Status::Interrupted) => StatusCode::CONFLICT,
-            (_, Status::Failed | Status::Fault) => StatusCode::UNPROCESSABLE_ENTITY,
-        };
-        (status, Json(json!({ "error": failure_json(&failure) }))).into_response()
-    }
-}
-
-fn missing(what: &str) -> Response {
-    let failure = Failure::usage("unreadable", format!("there is no such {what} in the studio"));
-    (StatusCode::NOT_FOUND, Json(json!({ "error": failure_json(&failure) }))).into_response()
+        .layer(from_fn_with_state(door, guard))
+        .with_state(house)
 }
 
 type Shared = State<Arc<Desk>>;
@@ -83,7 +75,7 @@ async fn beside<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
 ) -> Result<T, Refused> {
     let done = spawn_blocking(work).await;
-    done.unwrap_or_else(|_| Err(broken())).map_err(Refused)
+    done.unwrap_or_else(|_| Err(broken())).map_err(Refused::from)
 }
 
 async fn about(State(desk): Shared) -> Json<Value> {
@@ -91,6 +83,11 @@ async fn about(State(desk): Shared) -> Json<Value> {
         "name": "tracelight", "version": env!("CARGO_PKG_VERSION"), "folder": desk.folder.dir().to_string_lossy(),
         "simulated": true, "examples": EXAMPLES.map(|(name, _)| name),
     }))
+}
+
+/// What of all this there is, for programs that read such descriptions.
+async fn openapi() -> Response {
+    ([(CONTENT_TYPE, "application/json")], include_str!("openapi.json")).into_response()
 }
 
 async fn explain(State(desk): Shared, Path(code): Path<String>) -> Result<Json<Value>, Refused> {
@@ -118,7 +115,7 @@ async fn add(
 
 async fn picture(State(desk): Shared, Path(id): Path<String>) -> Result<Response, Refused> {
     let found = beside(move || Ok(desk.folder.picture_bytes(&id))).await?;
-    Ok(found.map_or_else(|| missing("picture"), shown))
+    Ok(found.map_or_else(|| Refused::missing("picture").into_response(), shown))
 }
 
 /// Something of the folder.
@@ -131,7 +128,11 @@ fn shown((bytes, kind): (Vec<u8>, &'static str)) -> Response {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Asked {
+    #[serde(default)]
     picture: String,
+    /// The run whose rest is drawn instead of a picture.
+    #[serde(default)]
+    rest_of: Option<String>,
     #[serde(default)]
     flags: Map<String, Value>,
     /// Which page asks.
@@ -149,7 +150,7 @@ struct Asked {
 fn asked(bytes: &[u8]) -> Result<Asked, Refused> {
     serde_json::from_slice(bytes).map_err(|e| {
         let message = format!("a plan or a job is asked for by {{\"picture\": ID, \"flags\": {{…}}}}: {e}");
-        Refused(Failure::usage("usage", message))
+        Refused::usage(message)
     })
 }
 
@@ -163,22 +164,21 @@ async fn points(State(desk): Shared, Path(id): Path<u64>) -> Response {
         Some(bytes) => {
             ([(CONTENT_TYPE, "application/octet-stream"), (CACHE_CONTROL, "no-store")], bytes).into_response()
         }
-        None => missing("plan"),
+        None => Refused::missing("plan").into_response(),
     }
 }
 
 async fn trace(State(desk): Shared, bytes: Bytes) -> Result<(StatusCode, Json<Value>), Refused> {
-    let Asked { picture, flags, page, attended, .. } = asked(&bytes)?;
+    let Asked { picture, rest_of, flags, page, attended, .. } = asked(&bytes)?;
     if attended && page.is_empty() {
-        return Err(Refused(Failure::usage(
-            "usage",
-            "a job that is attended names the page that operates it",
-        )));
+        return Err(Refused::usage("a job that is attended names the page that operates it"));
     }
     let threads = tokio::runtime::Handle::current();
     // begun where nobody who leaves can interrupt it; it goes on when nobody looks any more
     let begun = beside(move || {
-        let (begun, run) = desk.trace(&picture, &flags, attended.then_some(page.as_str()))?;
+        let subject = rest_of.as_deref().map_or(Subject::Picture(&picture), Subject::RestOf);
+        let operator = attended.then_some(page.as_str());
+        let (begun, run) = desk.trace(&Wanted { subject, flags: &flags, operator })?;
         drop(threads.spawn_blocking(run));
         if attended {
             drop(threads.spawn(watch_operator(desk)));
@@ -201,16 +201,22 @@ struct Wished {
 }
 
 async fn wish(State(desk): Shared, bytes: Bytes) -> Result<Json<Value>, Refused> {
-    let usage = |message: String| Refused(Failure::usage("usage", message));
     let Wished { page, wish } = serde_json::from_slice(&bytes)
-        .map_err(|e| usage(format!("a wish is {{\"page\": ID, \"wish\": WORD}}: {e}")))?;
-    ask(&desk, &page, &wish).map_err(usage)?;
+        .map_err(|e| Refused::usage(format!("a wish is {{\"page\": ID, \"wish\": WORD}}: {e}")))?;
+    ask(&desk, &page, &wish).map_err(Refused::usage)?;
     Ok(Json(json!({ "asked": wish })))
 }
 
 /// The job's events as they happen, for a page that names itself; what it sends are wishes, and that it is there.
-async fn live(State(desk): Shared, Query(Page { page }): Query<Page>, upgrade: WebSocketUpgrade) -> Response {
-    upgrade.max_message_size(MOST_MESSAGE).on_upgrade(move |socket| serve_socket(desk, page, socket))
+async fn live(
+    State(desk): Shared,
+    Extension(caller): Extension<Caller>,
+    Query(Page { page }): Query<Page>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    upgrade
+        .max_message_size(MOST_MESSAGE)
+        .on_upgrade(move |socket| serve_socket(desk, (page, caller), socket))
 }
 
 #[derive(Deserialize)]
@@ -224,8 +230,46 @@ async fn stop(State(desk): Shared) -> Json<Value> {
 }
 
 async fn runs(State(desk): Shared) -> Result<Json<Value>, Refused> {
-    let folder = desk.folder.runs().to_string_lossy().into_owned();
-    beside(move || desk.ask(&["runs", &folder, "--json"])).await.map(Json)
+    beside(move || desk.runs()).await.map(Json)
+}
+
+async fn one_run(State(desk): Shared, Path(run): Path<String>) -> Result<Json<Value>, Refused> {
+    let found = beside(move || desk.run(&run)).await?;
+    found.map(Json).ok_or_else(|| Refused::missing("run"))
+}
+
+#[derive(Deserialize)]
+struct Both {
+    first: String,
+    second: String,
+}
+
+async fn compare(
+    State(desk): Shared,
+    Query(Both { first, second }): Query<Both>,
+) -> Result<Json<Value>, Refused> {
+    beside(move || desk.compare(&first, &second)).await.map(Json)
+}
+
+async fn discard_run(desk: Shared, Path(run): Path<String>) -> Result<Json<Value>, Refused> {
+    discard(desk, Kind::Runs, run).await
+}
+
+async fn discard_picture(desk: Shared, Path(id): Path<String>) -> Result<Json<Value>, Refused> {
+    discard(desk, Kind::Pictures, id).await
+}
+
+async fn discard(State(desk): Shared, kind: Kind, id: String) -> Result<Json<Value>, Refused> {
+    let done = beside(move || desk.folder.discard(kind, &id)).await;
+    done.map(|name| Json(json!({ "in_trash": name }))).map_err(Refused::of_path)
+}
+
+async fn restore(
+    State(desk): Shared,
+    Path((kind, name)): Path<(Kind, String)>,
+) -> Result<Json<Value>, Refused> {
+    let done = beside(move || desk.folder.restore(kind, &name)).await;
+    done.map(|id| Json(json!({ "id": id }))).map_err(Refused::of_path)
 }
 
 async fn run_file(
@@ -233,12 +277,14 @@ async fn run_file(
     Path((run, name)): Path<(String, String)>,
 ) -> Result<Response, Refused> {
     let found = beside(move || Ok(desk.folder.run_file(&run, &name))).await?;
-    Ok(found.map_or_else(|| missing("file"), shown))
+    let (file, kind) = found.ok_or_else(|| Refused::missing("file"))?;
+    Ok(([(CONTENT_TYPE, kind), (CONTENT_SECURITY_POLICY, SHOWN), (CACHE_CONTROL, "no-cache")], sent(file))
+        .into_response())
 }
 
 /// A file of the page, zipped for who takes it so, or nothing anew for who has it.
 fn asset(name: &str, headers: &HeaderMap) -> Response {
-    let Some(packed) = packed(name) else { return missing("page") };
+    let Some(packed) = packed(name) else { return Refused::missing("page").into_response() };
     let common = [(ETAG, packed.tag.as_str()), (CACHE_CONTROL, "no-cache"), (VARY, "accept-encoding")];
     let has = |name, text: &str| {
         headers.get(name).and_then(|value| value.to_str().ok()).is_some_and(|value| value.contains(text))

@@ -8,11 +8,15 @@ use serde::Deserialize;
 use serde_json::json;
 use tokio::sync::broadcast::Receiver;
 use tokio::sync::broadcast::error::RecvError;
+use tokio::sync::watch;
 
 use crate::desk::Desk;
+use crate::devices::Caller;
 
 /// Longest message of a page, bytes.
 pub(crate) const MOST_MESSAGE: usize = 1024;
+/// How long a page may take to read what it is told.
+const PATIENCE: Duration = Duration::from_secs(5);
 /// How often is looked whether the operator is there.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -45,13 +49,15 @@ pub(crate) fn ask(desk: &Desk, page: &str, wish: &str) -> Result<(), String> {
 }
 
 /// Tells a page what happens, and hears it, until it leaves.
-pub(crate) async fn serve_socket(desk: Arc<Desk>, page: String, mut socket: WebSocket) {
+pub(crate) async fn serve_socket(desk: Arc<Desk>, (page, caller): (String, Caller), mut socket: WebSocket) {
     let Some(mut told) = joined(&desk, &mut socket).await else { return };
+    let mut sent_away = caller.sent_away.clone();
     loop {
         tokio::select! {
+            () = gone(&mut sent_away) => return,
             event = told.recv() => match event {
                 Ok(event) => {
-                    if socket.send(Message::Text(event.into())).await.is_err() {
+                    if say(&mut socket, event).await.is_none() {
                         return;
                     }
                 }
@@ -64,8 +70,8 @@ pub(crate) async fn serve_socket(desk: Arc<Desk>, page: String, mut socket: WebS
             },
             said = socket.recv() => match said {
                 Some(Ok(Message::Text(text))) => {
-                    if let Some(answer) = hear(&desk, &page, &text)
-                        && socket.send(Message::Text(answer.into())).await.is_err()
+                    if let Some(answer) = hear(&desk, (&page, caller.operates()), &text)
+                        && say(&mut socket, answer).await.is_none()
                     {
                         return;
                     }
@@ -81,18 +87,36 @@ pub(crate) async fn serve_socket(desk: Arc<Desk>, page: String, mut socket: WebS
 async fn joined(desk: &Desk, socket: &mut WebSocket) -> Option<Receiver<String>> {
     let (first, told) = desk.live.join();
     for event in first {
-        socket.send(Message::Text(event.into())).await.ok()?;
+        say(socket, event).await?;
     }
     Some(told)
 }
 
+/// Sends a page something; nothing where it has left, or reads nothing any more.
+async fn say(socket: &mut WebSocket, text: String) -> Option<()> {
+    tokio::time::timeout(PATIENCE, socket.send(Message::Text(text.into()))).await.ok()?.ok()
+}
+
+/// Waits until a device is sent away; a page of this computer never is.
+async fn gone(sent_away: &mut Option<watch::Receiver<bool>>) {
+    match sent_away {
+        // a device that nobody knows any more has left
+        Some(sent_away) => drop(sent_away.wait_for(|is| *is).await),
+        None => std::future::pending().await,
+    }
+}
+
 /// Takes what a page said; what it is answered, if something is wrong with it.
-fn hear(desk: &Desk, page: &str, text: &str) -> Option<String> {
+fn hear(desk: &Desk, (page, operates): (&str, bool), text: &str) -> Option<String> {
     let refused = |why: String| Some(json!({ "event": "refused", "message": why }).to_string());
     let Ok(Said { wish, here }) = serde_json::from_str(text) else {
         return refused("a page says {\"wish\": WORD} or {\"here\": true}".to_owned());
     };
-    if here || wish.is_some() {
+    if !operates && wish.as_deref().is_some_and(|wish| wish != "stop") {
+        return refused("this device may look on and stop, nothing else".to_owned());
+    }
+    // who looks on is nobody's sign of life
+    if operates && (here || wish.is_some()) {
         desk.live.hear(page);
     }
     wish.and_then(|wish| ask(desk, page, &wish).err()).and_then(refused)

@@ -229,6 +229,22 @@ const MESSAGES: &[(&str, &str)] = &[
         "The command line is wrong: a command, a flag or a value that there is not, or one too many, or too few. The message says which, and what to type instead. `tracelight COMMAND --help` lists a command's flags with their units, and ends with an example; `tracelight --help` lists the commands. Quantities have units (24in, 0.6m, 15deg, 1ft/s). With --json the same is said as {\"error\": {\"code\", \"message\", \"where\", \"help\", \"exit\"}}. The exit status is 2.",
     ),
     (
+        "certificate",
+        "The studio's certificate for its network, or the key to it, cannot be read. Delete both files that the message names: they are made anew, and devices ask once more whether to trust them.",
+    ),
+    (
+        "too-slow",
+        "What is sent to the studio has to come without long pauses. Look at the network, or bring the device nearer to its access point, and send it again.",
+    ),
+    (
+        "not-invited",
+        "A device of the network asks the studio without having joined. Open Devices on the studio's own computer, choose what the device may do, and read the code with its camera. A code is for one device, and holds ten minutes; after the studio was started anew, devices join anew.",
+    ),
+    (
+        "not-allowed",
+        "Who asks may not do that: a device that looks on may stop, and nothing else; pages of other servers may nothing. Open Devices on the studio's own computer for an invitation to operate.",
+    ),
+    (
         "not-a-run",
         "A folder holds no job.toml, or a damaged one, so it is no folder of a run. `tracelight runs` lists those that are. The exit status is 2.",
     ),

@@ -1,5 +1,5 @@
 use std::sync::Mutex;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
 use axum::body::Body;
 use axum::http::Request;
@@ -8,13 +8,20 @@ use tower::ServiceExt as _;
 use tracelight_task::{Progress, Stop};
 
 use super::*;
+use crate::devices::Devices;
 use crate::folder::Folder;
+use crate::lan::Lan;
 use crate::program::{Performed, Program, Seat};
+
+mod history;
+mod network;
+mod openapi;
 
 /// A program that notes what it is to do, plans two ticks, and traces until it is stopped or let go on.
 struct Noting {
     asked: Sender<Vec<String>>,
     traced: Mutex<Receiver<()>>,
+    runs: Arc<Mutex<String>>,
 }
 
 impl Program for Noting {
@@ -43,7 +50,9 @@ impl Program for Noting {
                 progress.say("note: two ticks");
                 Ok(done(r#"{"sequence":[{"lit_from_s":0.001,"lit_to_s":0.001}]}"#))
             }
-            "trace" => loop {
+            "trace" | "resume" => loop {
+                let out = arguments.iter().position(|argument| argument == "--out").unwrap() + 1;
+                std::fs::write(std::path::Path::new(&arguments[out]).join("job.toml"), "").unwrap();
                 progress.stage("run", 10);
                 stop.check()?;
                 if let Some(seat) = seat {
@@ -52,13 +61,14 @@ impl Program for Noting {
                         seat.tell(&json!({ "event": "heard", "wish": wish }));
                     }
                 }
-                if self.traced.lock().unwrap().try_recv().is_ok() {
+                // a test that fails lets nothing go on for ever
+                if !matches!(self.traced.lock().unwrap().try_recv(), Err(TryRecvError::Empty)) {
                     return Ok(done(r#"{"tracking":{}}"#));
                 }
                 std::thread::sleep(std::time::Duration::from_millis(2));
             },
             "explain" => panic!("a program that must not"),
-            _ => Ok(done(r#"{"runs":[]}"#)),
+            _ => Ok(done(&self.runs.lock().unwrap())),
         }
     }
 }
@@ -69,6 +79,11 @@ fn done(json: &str) -> Performed {
 
 struct Studio {
     router: Router,
+    /// For devices of the network.
+    network: Router,
+    devices: Arc<Devices>,
+    /// What the program tells of runs.
+    runs: Arc<Mutex<String>>,
     asked: Receiver<Vec<String>>,
     go_on: Sender<()>,
     dir: std::path::PathBuf,
@@ -84,9 +99,15 @@ fn studio(name: &str) -> Studio {
     let dir = std::env::temp_dir().join(format!("tracelight-studio-{name}-{}", std::process::id()));
     let (asked_by, asked) = channel();
     let (go_on, traced) = channel();
-    let program = Noting { asked: asked_by, traced: Mutex::new(traced) };
-    let desk = Desk::new(Box::new(program), Folder::open(&dir).unwrap());
-    Studio { router: router(Arc::new(desk), 4460), asked, go_on, dir }
+    let runs = Arc::new(Mutex::new(r#"{"runs":[]}"#.to_owned()));
+    let program = Noting { asked: asked_by, traced: Mutex::new(traced), runs: Arc::clone(&runs) };
+    let desk = Arc::new(Desk::new(Box::new(program), Folder::open(&dir).unwrap()));
+    let devices = Arc::new(Devices::default());
+    let lan = Some(Arc::new(Lan { port: 4461, fingerprint: "AB:CD".to_owned() }));
+    let house = House { desk, devices: Arc::clone(&devices), lan };
+    let names = ["workshop".to_owned(), "workshop.local".to_owned()];
+    let network = router(house.clone(), Door::Lan(names.into(), Arc::clone(&devices)));
+    Studio { router: router(house, Door::Local(4460)), network, devices, runs, asked, go_on, dir }
 }
 
 impl Studio {
@@ -106,6 +127,12 @@ impl Studio {
         let request =
             Request::post(path).header("host", "localhost:4460").header("origin", "http://localhost:4460");
         let (status, _, body) = self.send(request.body(body.into()).unwrap()).await;
+        (status, serde_json::from_slice(&body).unwrap_or(Value::Null))
+    }
+
+    async fn delete(&self, path: &str) -> (StatusCode, Value) {
+        let request = Request::delete(path).header("host", "localhost:4460").body(Body::empty()).unwrap();
+        let (status, _, body) = self.send(request).await;
         (status, serde_json::from_slice(&body).unwrap_or(Value::Null))
     }
 

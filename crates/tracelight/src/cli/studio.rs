@@ -1,5 +1,6 @@
 //! The page in a browser: a server over the other commands.
 
+use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -7,7 +8,7 @@ use serde_json::{Value, json};
 use tracelight_files as files;
 use tracelight_operator::{self as operator, Bar};
 use tracelight_sim::RigConfig;
-use tracelight_studio::{Performed, Program, Seat, open};
+use tracelight_studio::{Invitation, Performed, Program, Seat, open};
 use tracelight_task::{Failure, Progress, Stop, Task};
 
 use crate::cli::answer::{Answer, PerformsWith, Voice};
@@ -16,10 +17,11 @@ use tracelight_flags::each;
 
 /// Open the studio: a page in the browser where a picture is placed on the wall, planned and traced on the simulated rig
 ///
-/// The page is served to this computer alone, until Ctrl-C. Whatever it does is a command line, which it shows; its pictures and runs lie in a folder.
+/// The page is served to this computer alone, until Ctrl-C, and with --lan to devices of the network that are invited, such as a phone at the wall. Whatever it does is a
+/// command line, which it shows; its pictures and runs lie in a folder.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Examples: tracelight studio\n          tracelight studio examples/sign.svg --folder out/studio --no-open"
+    after_help = "Examples: tracelight studio\n          tracelight studio examples/sign.svg --folder out/studio --no-open\n          tracelight studio --lan"
 )]
 pub(crate) struct StudioArgs {
     /// A picture or a drawing to begin with
@@ -27,6 +29,9 @@ pub(crate) struct StudioArgs {
     /// Port of this computer at which the page is; 0 takes any that is free
     #[arg(long, value_name = "N", default_value_t = 4460)]
     port: u16,
+    /// Let devices of the network in that are invited, such as a phone, by https at the next port; a code for the first one's camera is printed
+    #[arg(long)]
+    lan: bool,
     /// Folder of its pictures and runs, which is made [default: Tracelight in the home folder]
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
@@ -81,13 +86,16 @@ impl Program for Commands {
 pub(crate) fn run(args: &StudioArgs, performs: PerformsWith, stop: &Stop) -> Result<Answer, Failure> {
     let bar = Bar::new(args.voice.quiet);
     let folder = folder(args.folder.as_deref())?;
-    let studio = open(args.port, &folder, Box::new(Commands(performs)))?;
+    let studio = open(args.port, args.lan, &folder, Box::new(Commands(performs)))?;
     let mut address = studio.address();
     if let Some(path) = &args.picture {
         let id = studio.add(path, &files::read(path)?)?;
         address.push_str(&format!("#picture={id}"));
     }
     bar.say(&format!("the studio is at {address}: Ctrl-C ends it"));
+    if let Some(invitation) = studio.invite()? {
+        invited(&bar, &invitation);
+    }
     if !args.no_open {
         trace::open(Path::new(&address));
     }
@@ -97,6 +105,17 @@ pub(crate) fn run(args: &StudioArgs, performs: PerformsWith, stop: &Stop) -> Res
         format!("the studio is closed; its pictures and runs are in {}", folder.display()),
         json.to_string(),
     ))
+}
+
+/// Says how a phone joins.
+fn invited(bar: &Bar, Invitation { link, code, fingerprint }: &Invitation) {
+    if std::io::stderr().is_terminal() {
+        bar.say(code);
+    }
+    bar.say(&format!(
+        "a phone joins by {link} within ten minutes, once, and may operate the head; the page has more invitations under Devices"
+    ));
+    bar.say(&format!("it asks whether to trust this computer, whose certificate is {fingerprint}"));
 }
 
 /// The folder that was given, or one in the home folder.

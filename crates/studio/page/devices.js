@@ -1,0 +1,105 @@
+// @ts-check
+/** Devices of the network: whether this one has joined, who else has, and how one is invited. */
+
+import * as api from './api.js'
+import { element } from './runs.js'
+
+/** How often the list is looked at while it is shown, ms. */
+const LOOK = 2000
+
+/** @template {HTMLElement} T @param {string} id @returns {T} */
+const by = (id) => /** @type {T} */ (document.getElementById(id))
+
+/** Joins by the invitation in the address, if there is one, and tells who this page is then. @returns {Promise<api.Session>} */
+export async function arrive() {
+  const invitation = new URLSearchParams(location.hash.slice(1)).get('join')
+  if (invitation) {
+    // what is used once is nobody's to see or to go back to
+    history.replaceState(null, '', location.pathname)
+    try {
+      await api.join(invitation, deviceName())
+    } catch (error) {
+      by('outside-why').textContent = error instanceof api.Refusal ? error.failure.message : String(error)
+    }
+  }
+  return api.session()
+}
+
+/** What a device calls itself, as far as its browser tells. */
+function deviceName() {
+  const agent = navigator.userAgent
+  const found = ['iPhone', 'iPad', 'Android', 'Windows', 'Macintosh', 'CrOS', 'Linux'].find((name) => agent.includes(name)) ?? 'device'
+  const browser = ['Firefox', 'Edg', 'Chrome', 'Safari'].find((name) => agent.includes(name))
+  return [found.replace('Macintosh', 'Mac').replace('CrOS', 'Chromebook'), browser?.replace('Edg', 'Edge')].filter(Boolean).join(', ')
+}
+
+export class Devices {
+  /** @param {(error: unknown) => void} problem */
+  constructor(problem) {
+    this.problem = problem
+    this.timer = 0
+    by('invite-operator').addEventListener('click', () => this.#invite('operator'))
+    by('invite-viewer').addEventListener('click', () => this.#invite('viewer'))
+  }
+
+  /** Shows the view, and keeps it true; or leaves it. @param {boolean} is */
+  show(is) {
+    clearInterval(this.timer)
+    if (!is) {
+      // nobody else reads it once the view is left
+      by('invitation').hidden = true
+      return
+    }
+    this.#look()
+    this.timer = window.setInterval(() => this.#look(), LOOK)
+  }
+
+  async #look() {
+    try {
+      const session = await api.session()
+      this.problem(null)
+      const { lan, devices } = session
+      by('inviting').hidden = !lan
+      by('devices-words').textContent = lan
+        ? `A phone at the wall, or another computer of this network, finds the studio at ${lan.addresses.join(' or ')}. Only devices that were invited may ask anything; any device may stop.`
+        : session.role === 'operator'
+          ? 'No other device reaches this studio now. Close it, and start it with tracelight studio --lan: then a phone that you invite here operates it at the wall.'
+          : 'This device looks on, and may stop.'
+      by('nobody').hidden = (devices ?? []).length > 0
+      by('device-list').replaceChildren(...(devices ?? []).map((device) => this.#row(device)))
+    } catch (error) {
+      this.problem(error)
+    }
+  }
+
+  /** @param {api.Device} device */
+  #row(device) {
+    const minutes = Math.floor(device.seen_s / 60)
+    const here = device.lines > 0 ? 'attends a job now' : minutes < 1 ? 'seen just now' : `seen ${minutes} min ago`
+    const button = element('button', { type: 'button', class: 'plain', text: 'Send away', 'aria-label': `Send away: ${device.name}` })
+    button.addEventListener('click', async () => {
+      await api.sendAway(device.id).catch(this.problem)
+      this.#look()
+    })
+    const role = device.role === 'operator' ? 'may operate' : 'looks on'
+    return element('li', {}, element('div', {}, element('strong', { text: device.name }), element('p', { class: 'under', text: `${role} · ${here}` })), button)
+  }
+
+  /** @param {'operator' | 'viewer'} role */
+  async #invite(role) {
+    try {
+      const made = await api.invite(role)
+      this.problem(null)
+      by('invitation').hidden = false
+      by('invited').textContent = role === 'operator' ? 'For a device that may operate the head' : 'For a device that looks on, and may stop'
+      const code = /** @type {HTMLImageElement} */ (by('code'))
+      code.hidden = made.code_svg === null
+      code.src = `data:image/svg+xml,${encodeURIComponent(made.code_svg ?? '')}`
+      by('link').textContent = made.links[0]
+      by('fingerprint').textContent = made.fingerprint
+      by('invitation').scrollIntoView({ block: 'nearest' })
+    } catch (error) {
+      this.problem(error)
+    }
+  }
+}

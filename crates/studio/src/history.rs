@@ -1,0 +1,64 @@
+//! Runs that were, as pages show them.
+
+use serde_json::{Value, json};
+use tracelight_task::Failure;
+
+use crate::desk::Desk;
+use crate::flags::asked_by;
+
+impl Desk {
+    /// All runs, the oldest first: what `tracelight runs` tells, and by what a page asks for them again.
+    ///
+    /// # Errors
+    /// What the program says.
+    pub(crate) fn runs(&self) -> Result<Value, Failure> {
+        let mut told = self.ask(&["runs", &self.folder.runs().to_string_lossy(), "--json"])?;
+        for run in told["runs"].as_array_mut().into_iter().flatten() {
+            self.know(run);
+        }
+        Ok(told)
+    }
+
+    /// Adds a run's id, its files, and the picture and flags that it was asked by; null where no page can ask so.
+    fn know(&self, run: &mut Value) {
+        let id = run["folder"]
+            .as_str()
+            .and_then(|dir| dir.rsplit(['/', '\\']).next())
+            .unwrap_or_default()
+            .to_owned();
+        let command = run["command"].as_array().into_iter().flatten();
+        let command: Vec<String> = command.filter_map(Value::as_str).map(str::to_owned).collect();
+        let asked = asked_by(&command).and_then(|(path, flags)| {
+            let picture = self.folder.id_of(path)?;
+            Some((picture, flags))
+        });
+        let (picture, flags) = asked.unzip();
+        run["files"] = json!(self.folder.run_files(&id));
+        (run["id"], run["picture"], run["flags"]) = (json!(id), json!(picture), json!(flags));
+    }
+
+    /// One run, by its id; `None` where there is none.
+    ///
+    /// # Errors
+    /// What the program says.
+    pub(crate) fn run(&self, id: &str) -> Result<Option<Value>, Failure> {
+        let runs = self.runs()?;
+        Ok(runs["runs"].as_array().into_iter().flatten().find(|run| run["id"] == id).cloned())
+    }
+
+    /// Two runs side by side, by their ids.
+    ///
+    /// # Errors
+    /// `unreadable`; what the program says.
+    pub(crate) fn compare(&self, first: &str, second: &str) -> Result<Value, Failure> {
+        let dir = |id: &str| {
+            let none =
+                || Failure::usage("unreadable", format!("there is no run {id:?} in the studio's folder"));
+            self.folder.run(id).map(|dir| dir.to_string_lossy().into_owned()).ok_or_else(none)
+        };
+        let mut told = self.ask(&["compare", &dir(first)?, &dir(second)?, "--json"])?;
+        self.know(&mut told["first"]);
+        self.know(&mut told["second"]);
+        Ok(told)
+    }
+}
