@@ -1,4 +1,4 @@
-// A browser uses the studio: node studio.mjs ADDRESS, of one that was just opened on an empty folder.
+// A browser uses the studio: node studio.mjs ADDRESS PICTURE [ADDRESS], of one that was just opened on an empty folder, and of one for a board that was just powered up.
 // The first minute by one click, dragging, typing, undoing, a wrong value, what is no picture, a picture from a file, stopping from within a field; at three widths, on each ground, nothing
 // axe finds wrong, nothing wider than the screen, no error of a script, nothing asked of anybody else; somebody attends a job, is lost, goes on with an old one, and joins from a phone.
 import { readFileSync } from 'node:fs'
@@ -317,6 +317,36 @@ const devices = async () => {
   return took
 }
 
+// A board at a port that was just powered up: turned by hand, told where it points, drawn with, stopped, gone on with.
+const port = async at => {
+  const page = await (await browser.newContext({ viewport: { width: 390, height: 844 }, bypassCSP: true })).newPage()
+  page.on('pageerror', error => complaints.push(`at the port: ${error.message}`))
+  await page.goto(at + '#run')
+  await until(page, 'the head is not called real', () => /^Real: /.test(document.getElementById('ribbon').textContent))
+  await until(page, 'nothing is planned for the head', () => document.getElementById('count').textContent !== '–')
+  await page.click('#begin')
+  await until(page, 'a head that does not know where it points is drawn with', () => /home it first/.test(document.getElementById('attended').textContent))
+  await page.click('#head summary')
+  await until(page, 'it is not told that the head does not know where it points', () => /does not know/.test(document.getElementById('head-at').textContent))
+  await page.click('[aria-label=Left]')
+  await until(page, 'the head is not turned', () => /pan (1|0\.99|1\.01)°/.test(document.getElementById('head-at').textContent))
+  await page.click('[aria-label=Right]')
+  await until(page, 'the head is not turned back', () => /pan -?0(\.0\d)?°/.test(document.getElementById('head-at').textContent))
+  await page.click('#home')
+  await until(page, 'the head is not homed', () => /knows where it points/.test(document.getElementById('head-at').textContent))
+  await page.evaluate(axe)
+  for (const v of (await page.evaluate(() => globalThis.axe.run())).violations) complaints.push(`at the port: ${v.id}: ${v.nodes[0].html.slice(0, 120)}`)
+  await goes(page)
+  await untilLit(page, 'at the port')
+  await page.click('#stop')
+  await until(page, 'a board is not stopped', () => /Stopped, dark/.test(document.getElementById('state').textContent))
+  await hold(page, 1100)
+  await page.click('#go')
+  await untilLit(page, 'at the port, after it was stopped')
+  await ended(page)
+  await page.context().close()
+}
+
 const looks = async () => {
   for (const [width, height] of [[1280, 800], [820, 1100], [390, 844]]) {
     for (const theme of ['light', 'dark', 'room']) {
@@ -345,6 +375,7 @@ const dark = await lost()
 await steps()
 await history()
 const far = await devices()
+if (process.argv[4]) await port(process.argv[4])
 await keys()
 await looks()
 await browser.close()

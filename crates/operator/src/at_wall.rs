@@ -165,12 +165,22 @@ impl<'a> AtWall<'a> {
         }
     }
 
+    /// How far it is, and, where a clock is kept, how well.
+    fn progress(&self, now: &Snapshot) -> Value {
+        let mut told = snapshot_json(now);
+        if let Some((late, latest_s)) = self.clock.map(|clock| clock.lateness()) {
+            told["late_ticks"] = json!(late);
+            told["latest_ms"] = json!(1e3 * latest_s);
+        }
+        told
+    }
+
     /// Tells who has a seat how far it is, and hears what he asks.
     fn seated(&mut self, now: &Snapshot) -> Option<Ask> {
         let seat = self.seat?;
         if self.seat_told.is_none_or(|told| told.elapsed() >= SEAT_EACH) {
             self.seat_told = Some(Instant::now());
-            seat.tell(&snapshot_json(now));
+            seat.tell(&self.progress(now));
         }
         let wish = seat.wish()?;
         if wish == Wish::End {
@@ -209,7 +219,7 @@ impl Hands for AtWall<'_> {
             return Some(ask);
         }
         if self.seat.is_none() && now.tick.is_multiple_of(PROGRESS_TICKS) {
-            self.print(&snapshot_json(now));
+            self.print(&self.progress(now));
         }
         let Some(key) = self.keys.as_ref().and_then(Keys::next) else { return self.by_itself(now) };
         if let Some(step) = self.step(key, now) {

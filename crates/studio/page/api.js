@@ -13,6 +13,7 @@
  * @typedef {{ id: string, folder: string, begun: string, picture: string | null, flags: Flags | null, files: { name: string, bytes: number }[], width_m: number, height_m: number, strokes: number, duration_s: number | null,
  *   rms_mm: number | null, max_mm: number | null, finished: boolean, running: boolean, left: boolean, went_on_in: string | null, goes_on_with: string | null, progress: { stroke: number, strokes: number } | null }} RunTold
  * @typedef {{ first: RunTold, second: RunTold, same_drawing: boolean, only_first_asked: string[], only_second_asked: string[], figures: { name: string, unit: string, digits: number, first: number | null, second: number | null, difference: number | null }[] }} Compared
+ * @typedef {{ name: string, planned_as: string, at_port: boolean, real: boolean }} Head
  * @typedef {{ id: number, name: string, role: 'operator' | 'viewer', lines: number, seen_s: number }} Device
  * @typedef {{ role: 'operator' | 'viewer' | null, local: boolean, lan: { addresses: string[], fingerprint: string } | null, devices: Device[] | null }} Session
  * @typedef {{ role: string, links: string[], code_svg: string | null, fingerprint: string, holds_s: number }} Invitation
@@ -47,6 +48,7 @@ async function json(path, init) {
 /** @param {string} path @param {unknown} body @param {AbortSignal} [signal] */
 const post = (path, body, signal) => json(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body), signal })
 
+/** @returns {Promise<{ version: string, folder: string, head: Head | null }>} */
 export const about = () => json('/about')
 /** @returns {Promise<Picture[]>} */
 export const pictures = async () => (await json('/pictures')).pictures
@@ -62,6 +64,8 @@ export const trace = (asked) => post('/jobs', asked)
 export const attend = (asked) => post('/jobs', { ...asked, attended: true })
 /** @returns {Promise<Job | null>} */
 export const job = async () => (await json('/jobs/current')).job
+/** Moves the head at the port by hand, dark. @param {{ move: string, by?: string }} asked @returns {Promise<{ homed: boolean, pan_deg: number, tilt_deg: number }>} */
+export const moveHead = (asked) => post('/head', asked)
 export const stop = () => post('/stop', {})
 /** @returns {Promise<RunTold[]>} */
 export const runs = async () => (await json('/runs')).runs

@@ -91,6 +91,12 @@ export class Fields {
     return label
   }
 
+  /** Gives the choice that is none of a field's own another name. @param {string} flag @param {string} words */
+  name(flag, words) {
+    const first = /** @type {HTMLSelectElement} */ (this.inputs.get(flag)).options[0]
+    if (first) first.text = words
+  }
+
   /** Shows what is asked for. @param {Flags} flags */
   show(flags) {
     for (const [flag, input] of this.inputs) {

@@ -4,6 +4,7 @@
 import * as api from './api.js'
 import { Fields, asLabelled } from './fields.js'
 import { showCompared } from './compare.js'
+import { HeadPad } from './head.js'
 import { Devices, arrive } from './devices.js'
 import { keep, kept, themes } from './kept.js'
 import { Runs, element, follow, showResult } from './runs.js'
@@ -31,6 +32,8 @@ const operates = session?.role === 'operator'
 const chosen = new URLSearchParams(location.hash.slice(1)).get('picture')
 const store = new Store(chosen ? { picture: chosen, flags: {} } : earlier())
 let folder = ''
+/** @type {api.Head | null} the head that the studio was opened for */
+let head = null
 /** @type {api.Plan | null} */
 let plan = null
 /** @type {api.Flags} what it was asked by */
@@ -95,6 +98,7 @@ const run = new Run(page, {
 })
 
 run.operates = operates
+const pad = new HeadPad(problem)
 const devices = new Devices((error) => told('devices-problem', error))
 const runs = new Runs({
   again: (of) => take_up(of, '#place'),
@@ -396,8 +400,20 @@ function key(event) {
   if (event.key === '0') wall.fit()
 }
 
+/** Says whose light it is: that of the head that the studio was opened for, or a simulated one's. */
+function heads() {
+  const is_chosen = Boolean(store.asked.flags.rig)
+  const at_port = head !== null && head.at_port && !is_chosen
+  const is_real = at_port && head !== null && head.real
+  by('ribbon').textContent = is_real ? `Real: ${head?.name}` : at_port ? `Practice: ${head?.name}` : 'Simulated'
+  by('ribbon').classList.toggle('real', is_real)
+  run.atPort(at_port, is_real)
+  pad.show(at_port && operates)
+}
+
 store.watch((asked) => {
   fields.show(asked.flags)
+  heads()
   // what was traced was another wish
   by('result').hidden = true
   keep('sessionStorage', 'asked', JSON.stringify(asked))
@@ -445,7 +461,12 @@ if (session?.role === null) {
 } else {
   planSoon(0)
   list().catch(problem)
-  api.about().then((told) => (folder = told.folder)).then(view, problem)
+  api.about().then((told) => {
+    folder = told.folder
+    head = told.head
+    if (head) fields.name('rig', `${head.name}: the one here`)
+    heads()
+  }).then(view, problem)
   look()
   setInterval(look, LOOK)
 }

@@ -40,6 +40,8 @@ export class Run {
     this.framing = false
     /** @type {api.RunTold | null} the run whose rest is to be drawn */
     this.rest = null
+    /** Whether a board at a port draws. */
+    this.at_port = false
     /** Whether this device may operate anything. */
     this.operates = true
     /** @type {WakeLockSentinel | null} keeps a phone's screen on: one that sleeps stops the job */
@@ -81,6 +83,13 @@ export class Run {
     this.#modes()
   }
 
+  /** Says what draws: a head at a port keeps time by itself, and a real one is nobody's to hurry. @param {boolean} at_port @param {boolean} is_real */
+  atPort(at_port, is_real) {
+    this.at_port = at_port
+    by('times-row').hidden = at_port
+    by('by-what').textContent = is_real ? 'With the real head, whose light is real: see that nobody stands in it' : at_port ? 'With the board at the port' : 'By the clock, as at a real head'
+  }
+
   /** Begins at a stroke. @param {number} number */
   from(number) {
     this.goOnWith(null)
@@ -93,7 +102,7 @@ export class Run {
     /** @type {api.Flags} */
     const how = {}
     const times = field('times').value
-    if (times !== '1') how.real_time = times
+    if (times !== '1' && !this.at_port) how.real_time = times
     if (field('frame').value !== '') how.frame = field('frame').value
     if (this.rest) return { rest_of: this.rest.id, flags: how }
     const asked = { ...flags, ...how }

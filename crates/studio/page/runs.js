@@ -7,6 +7,9 @@ import { length, plain, size, time } from './words.js'
 /** How often is asked how far a job is, ms. */
 const EVERY = 120
 
+/** Who tells where the light was, where no simulation does. @type {Record<string, string>} */
+const SEEN_BY = { encoders: 'As its encoders say: nobody saw the light.', commands: 'As it was commanded: nobody measured the head.' }
+
 /** Elements of text, classes and children. @param {string} name @param {{ text?: string, class?: string, [attribute: string]: string | undefined }} [how] @param {(Node | string)[]} children */
 export function element(name, how = {}, ...children) {
   const made = document.createElement(name)
@@ -49,10 +52,11 @@ export function showResult(card, ended) {
   // of a part of it no error tells how exact the whole would be
   if (failure || !answer?.tracking) return
   const { tracking, plan, target } = answer
-  card.append(element('h2', { text: `${picture}: traced on the simulated head` }))
+  card.append(element('h2', { text: `${picture}: ${answer.simulated ? 'traced on the simulated head' : 'drawn'}` }))
   card.append(
     element('img', { src: runFile(run, 'trace.png'), alt: 'What a camera with an open shutter would have seen of the wall', width: '320' }),
     element('p', {}, element('strong', { text: `${plain(tracking.max_mm, 2)} mm` }), ' off at most, ', element('strong', { text: `${plain(tracking.rms_mm, 3)} mm` }), ' rms'),
+    ...(SEEN_BY[answer.light_from] ? [element('p', { class: 'under', text: SEEN_BY[answer.light_from] })] : []),
     element('p', { class: 'under', text: `${length(target.width_m)} × ${length(target.height_m)} in ${time(plan.duration_s)}` }),
     element('a', { href: runFile(run, 'report.html'), target: '_blank', rel: 'noopener', class: 'plain', text: 'Open the report' }),
   )

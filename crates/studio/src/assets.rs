@@ -28,7 +28,7 @@ macro_rules! script {
 }
 
 /// The page first.
-pub(crate) static ASSETS: [Asset; 18] = [
+pub(crate) static ASSETS: [Asset; 19] = [
     asset!("index.html", "text/html; charset=utf-8"),
     asset!("style.css", "text/css; charset=utf-8"),
     asset!("icon.svg", "image/svg+xml"),
@@ -47,6 +47,7 @@ pub(crate) static ASSETS: [Asset; 18] = [
     script!("kept.js"),
     script!("devices.js"),
     script!("compare.js"),
+    script!("head.js"),
 ];
 
 /// A file in both forms, and what tells one version from another.

@@ -13,7 +13,7 @@ use crate::flags::{Which, arguments, typed};
 use crate::folder::Folder;
 use crate::live::Live;
 use crate::points;
-use crate::program::{Performed, Program, Seat};
+use crate::program::{Head, Performed, Program, Seat};
 use crate::tasks::{AtLast, Ended, Work};
 
 /// Plans whose points are kept for pages to fetch.
@@ -32,6 +32,8 @@ pub(crate) struct Desk {
     /// Held while a plan is made: each takes all of the processor.
     planning: Mutex<()>,
     job: Mutex<Option<Job>>,
+    /// A move of the head by hand.
+    moved: Mutex<Option<Arc<Work>>>,
     /// What pages and a job that they attend say to each other.
     pub(crate) live: Live,
 }
@@ -79,12 +81,19 @@ impl Desk {
             asked: Mutex::default(),
             planning: Mutex::default(),
             job: Mutex::default(),
+            moved: Mutex::default(),
             live: Live::new(),
         }
     }
 
     fn work(&self) -> Arc<Work> {
         Work::new(self.next.fetch_add(1, Ordering::Relaxed))
+    }
+
+    /// The head that the studio was opened for, where a page chooses no other.
+    fn head_of(&self, flags: &Map<String, Value>) -> Option<&Head> {
+        let chooses = flags.get("rig").and_then(Value::as_str).is_some_and(|rig| !rig.trim().is_empty());
+        self.program.head().filter(|_| !chooses)
     }
 
     /// The command line of what a page asks for.
@@ -103,6 +112,10 @@ impl Desk {
         };
         let mut command = vec![name.to_owned(), path.to_string_lossy().into_owned()];
         command.extend(arguments(flags, which, &self.program.rigs())?);
+        if let Some(head) = self.head_of(flags) {
+            let rig = if which == Which::Attended { &head.draws_as } else { &head.planned_as };
+            command.push(format!("--rig={rig}"));
+        }
         Ok(command)
     }
 
@@ -172,30 +185,52 @@ impl Desk {
     /// The command of a job, and what is drawn by it.
     fn job_command(&self, wanted: &Wanted<'_>) -> Result<(Vec<String>, String, Value), Failure> {
         let Wanted { subject, flags, operator } = wanted;
-        let (mut command, picture, drawn) = match subject {
+        let (mut command, picture, drawn, keeps_time) = match subject {
             Subject::Picture(picture) => {
                 let which = if operator.is_some() { Which::Attended } else { Which::Drawing };
                 let drawn = flags.iter().filter(|(name, _)| Which::Drawing.has(name));
                 let drawn: Map<String, Value> =
                     drawn.map(|(name, value)| (name.clone(), value.clone())).collect();
-                (self.command("trace", picture, flags, which)?, (*picture).to_owned(), json!(drawn))
+                let keeps_time = self.head_of(flags).is_some_and(|head| head.is_at_port);
+                let command = self.command("trace", picture, flags, which)?;
+                (command, (*picture).to_owned(), json!(drawn), keeps_time)
             }
-            Subject::RestOf(run) => {
-                let none = || {
-                    Failure::usage("unreadable", format!("there is no run {run:?} in the studio's folder"))
-                };
-                let told = self.run(run)?.ok_or_else(none)?;
-                let dir = self.folder.run(run).ok_or_else(none)?;
-                let mut command = vec!["resume".to_owned(), dir.to_string_lossy().into_owned()];
-                command.extend(arguments(flags, Which::Rest, &[])?);
-                let picture = told["picture"].as_str().unwrap_or("picture.png").to_owned();
-                (command, picture, told["flags"].clone())
-            }
+            Subject::RestOf(run) => self.rest_command(run, flags)?,
         };
-        if operator.is_some() && !command.iter().any(|argument| argument.starts_with("--real-time")) {
+        let is_paced = command.iter().any(|argument| argument.starts_with("--real-time"));
+        if operator.is_some() && !is_paced && !keeps_time {
             command.push("--real-time=1".to_owned());
         }
         Ok((command, picture, drawn))
+    }
+
+    /// The command that draws what a run has left, its picture and flags, and whether its head keeps time by itself.
+    fn rest_command(
+        &self,
+        run: &str,
+        flags: &Map<String, Value>,
+    ) -> Result<(Vec<String>, String, Value, bool), Failure> {
+        let none = || Failure::usage("unreadable", format!("there is no run {run:?} in the studio's folder"));
+        let told = self.run(run)?.ok_or_else(none)?;
+        let dir = self.folder.run(run).ok_or_else(none)?;
+        let rig = told["rig"].as_str();
+        let head = self.program.head();
+        let is_heads = |rig: &str| {
+            head.is_some_and(|head| [&head.draws_as, &head.planned_as].iter().any(|is| *is == rig))
+        };
+        if let Some(rig) =
+            rig.filter(|rig| !is_heads(rig) && !self.program.rigs().iter().any(|known| known == rig))
+        {
+            let message = format!(
+                "{run} was drawn by the head {rig}: open the studio with --rig {rig}, and go on with it there"
+            );
+            return Err(Failure::usage("usage", message));
+        }
+        let mut command = vec!["resume".to_owned(), dir.to_string_lossy().into_owned()];
+        command.extend(arguments(flags, Which::Rest, &[])?);
+        let picture = told["picture"].as_str().unwrap_or("picture.png").to_owned();
+        let keeps_time = head.is_some_and(|head| head.is_at_port && rig == Some(head.draws_as.as_str()));
+        Ok((command, picture, told["flags"].clone(), keeps_time))
     }
 
     /// Begins to trace a picture, or the rest of a run, on the simulated rig, as fast as that can or, where a page operates it, by the clock; what is to be run then.
@@ -214,6 +249,9 @@ impl Desk {
             if job.as_ref().is_some_and(|job| !job.work.is_over()) {
                 let message = "a picture is being traced: stop it, or wait until it is done";
                 return Err(Failure::failed("busy", message));
+            }
+            if self.is_moved() {
+                return Err(Failure::failed("busy", "the head is moved by hand: wait until it rests"));
             }
             *job = Some(Job {
                 work: Arc::clone(&work),
@@ -272,8 +310,36 @@ impl Desk {
         self.end()
     }
 
-    /// Ends the job in hand, dark; whether there was one.
+    /// Whether the head is moved by hand.
+    fn is_moved(&self) -> bool {
+        locked(&self.moved).as_ref().is_some_and(|work| !work.is_over())
+    }
+
+    /// Begins to move the head by hand.
+    ///
+    /// # Errors
+    /// `busy` while a job or another move is on.
+    pub(crate) fn begin_move(&self) -> Result<Arc<Work>, Failure> {
+        // as where a job begins: both look at both
+        let job = locked(&self.job);
+        if job.as_ref().is_some_and(|job| !job.work.is_over()) || self.is_moved() {
+            return Err(Failure::failed(
+                "busy",
+                "the head is in use: stop what is drawn, or wait until it rests",
+            ));
+        }
+        let work = self.work();
+        *locked(&self.moved) = Some(Arc::clone(&work));
+        Ok(work)
+    }
+
+    /// Ends the job in hand, dark, and any move of the head; whether there was one.
     pub(crate) fn end(&self) -> bool {
+        let moved = locked(&self.moved).as_ref().filter(|work| !work.is_over()).cloned();
+        if let Some(work) = moved {
+            work.stop.want();
+            return true;
+        }
         let job = locked(&self.job);
         let is_on = job.as_ref().filter(|job| !job.work.is_over());
         is_on.is_some_and(|job| {
@@ -288,6 +354,16 @@ impl Desk {
         locked(&self.asked).values().for_each(|(_, work)| {
             work.stop.want();
         });
+    }
+
+    /// What a command has answered.
+    ///
+    /// # Errors
+    /// What failed of what it worked on.
+    pub(crate) fn answer(performed: Performed) -> Result<Value, Failure> {
+        let failure = performed.failure.clone();
+        let answer = json_of(performed)?;
+        failure.map_or(Ok(answer), Err)
     }
 
     /// What a command without a picture answers.

@@ -25,7 +25,8 @@ const KINDS: [(&str, &str); 15] = [
     ("tif", "image/tiff"),
     ("tiff", "image/tiff"),
     ("dxf", "application/octet-stream"),
-    ("json", "application/json"),
+    // what it is nobody has looked at
+    ("json", "application/octet-stream"),
     ("csv", "text/csv"),
 ];
 /// Those that browsers show.

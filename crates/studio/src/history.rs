@@ -6,6 +6,12 @@ use tracelight_task::Failure;
 use crate::desk::Desk;
 use crate::flags::asked_by;
 
+/// The head that a command line names.
+fn rig_of(command: &[String]) -> Option<&str> {
+    let at = command.iter().position(|argument| argument.starts_with("--rig"))?;
+    command[at].strip_prefix("--rig=").or_else(|| command.get(at + 1).map(String::as_str))
+}
+
 impl Desk {
     /// All runs, the oldest first: what `tracelight runs` tells, and by what a page asks for them again.
     ///
@@ -32,7 +38,13 @@ impl Desk {
             let picture = self.folder.id_of(path)?;
             Some((picture, flags))
         });
-        let (picture, flags) = asked.unzip();
+        let (picture, mut flags) = asked.unzip();
+        // another head, or none, is there now
+        let known = self.program.rigs();
+        let is_chosen = |rig: &Value| rig.as_str().is_some_and(|rig| known.iter().any(|known| known == rig));
+        let is_other = flags.as_ref().and_then(|flags| flags.get("rig")).is_some_and(|rig| !is_chosen(rig));
+        flags.iter_mut().filter(|_| is_other).for_each(|flags| drop(flags.remove("rig")));
+        run["rig"] = json!(rig_of(&command));
         run["files"] = json!(self.folder.run_files(&id));
         (run["id"], run["picture"], run["flags"]) = (json!(id), json!(picture), json!(flags));
     }

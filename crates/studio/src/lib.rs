@@ -11,6 +11,7 @@ mod door;
 mod flags;
 mod folder;
 mod guard;
+mod head;
 mod history;
 mod house;
 mod lan;
@@ -25,5 +26,5 @@ mod session;
 mod socket;
 mod tasks;
 
-pub use program::{Performed, Program, Seat};
+pub use program::{Head, Performed, Program, Seat};
 pub use serve::{Invitation, Studio, open};

@@ -8,6 +8,11 @@ pub trait Program: Send + Sync + 'static {
     /// Names of the heads that a page may choose: simulated ones, that no file and no port has to be read for.
     fn rigs(&self) -> Vec<String>;
 
+    /// The head that a page's jobs are drawn with unless it chooses one of those; the program's own default where there is none.
+    fn head(&self) -> Option<&Head> {
+        None
+    }
+
     /// Whether somebody who attends a job may ask that of it.
     fn knows(&self, wish: &str) -> bool;
 
@@ -21,6 +26,19 @@ pub trait Program: Send + Sync + 'static {
         seat: Option<&dyn Seat>,
         task: (&dyn Progress, &Stop),
     ) -> Result<Performed, Failure>;
+}
+
+/// A head that the studio was opened for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Head {
+    /// The value of `--rig` by which it draws.
+    pub draws_as: String,
+    /// The value of `--rig` by which it is planned for and simulated.
+    pub planned_as: String,
+    /// Its board is at a port, and keeps time by itself.
+    pub is_at_port: bool,
+    /// Its board says that it moves a real head, or what it says is not known.
+    pub is_real: bool,
 }
 
 /// Where somebody sits who attends a job.

@@ -24,6 +24,7 @@ use crate::desk::{Desk, Subject, Wanted};
 use crate::devices::Caller;
 use crate::folder::{EXAMPLES, Kind, MOST_BYTES};
 use crate::guard::{Door, SHOWN, guard};
+use crate::head::Move;
 use crate::house::House;
 use crate::refused::Refused;
 use crate::sent::sent;
@@ -45,6 +46,7 @@ pub(crate) fn router(house: House, door: Door) -> Router {
         .route("/jobs/current", get(job))
         .route("/jobs/current/wishes", post(wish))
         .route("/live", get(live))
+        .route("/head", post(move_head))
         .route("/stop", post(stop))
         .route("/session", get(session::told))
         .route("/session/join", post(session::join))
@@ -79,9 +81,12 @@ async fn beside<T: Send + 'static>(
 }
 
 async fn about(State(desk): Shared) -> Json<Value> {
+    let head = desk.program.head().map(|head| {
+        json!({ "name": head.draws_as, "planned_as": head.planned_as, "at_port": head.is_at_port, "real": head.is_real })
+    });
     Json(json!({
         "name": "tracelight", "version": env!("CARGO_PKG_VERSION"), "folder": desk.folder.dir().to_string_lossy(),
-        "simulated": true, "examples": EXAMPLES.map(|(name, _)| name),
+        "head": head, "examples": EXAMPLES.map(|(name, _)| name),
     }))
 }
 
@@ -222,6 +227,16 @@ async fn live(
 #[derive(Deserialize)]
 struct Page {
     page: String,
+}
+
+/// Moves the head at the port by hand.
+async fn move_head(State(desk): Shared, bytes: Bytes) -> Result<Json<Value>, Refused> {
+    let by: Move = serde_json::from_slice(&bytes).map_err(|e| {
+        Refused::usage(format!(
+            "a head is moved by {{\"move\": \"home\", \"park\", \"look\" or \"jog\", \"by\": \"5deg,0deg\"}}: {e}"
+        ))
+    })?;
+    beside(move || desk.move_head(&by)).await.map(Json)
 }
 
 /// Never refused, whatever is sent with it.

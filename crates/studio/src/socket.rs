@@ -129,3 +129,84 @@ pub(crate) async fn watch_operator(desk: Arc<Desk>) {
         tokio::time::sleep(LOOK).await;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::folder::Folder;
+    use crate::program::{Performed, Program, Seat};
+    use serde_json::Value;
+    use tracelight_task::{Failure, Progress, Stop};
+
+    /// A program that does nothing, and knows some wishes.
+    struct Idle;
+
+    impl Program for Idle {
+        fn rigs(&self) -> Vec<String> {
+            Vec::new()
+        }
+
+        fn knows(&self, wish: &str) -> bool {
+            ["arm", "go-on", "stop", "end", "speed=0.5"].contains(&wish)
+        }
+
+        fn perform(
+            &self,
+            _: &[String],
+            _: Option<&dyn Seat>,
+            _: (&dyn Progress, &Stop),
+        ) -> Result<Performed, Failure> {
+            Err(Failure::interrupted())
+        }
+    }
+
+    #[test]
+    fn whatever_a_page_says_is_taken_or_refused_and_who_looks_on_asks_nothing_but_to_stop() {
+        let dir = std::env::temp_dir().join(format!("tracelight-socket-{}", std::process::id()));
+        let desk = Desk::new(Box::new(Idle), Folder::open(&dir).unwrap());
+        desk.live.begin("a");
+        let seeds: [&[u8]; 6] = [
+            br#"{"wish":"arm"}"#,
+            br#"{"wish":"go-on","here":true}"#,
+            br#"{"here":true}"#,
+            br#"{"wish":"stop"}"#,
+            br#"{"wish":"speed=0.5"}"#,
+            br#"{"wish":"take","here":false}"#,
+        ];
+        let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut random = |below: usize| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            usize::try_from(state >> 33).unwrap() % below
+        };
+        for _ in 0..100_000 {
+            let mut bytes = seeds[random(seeds.len())].to_vec();
+            for _ in 0..random(4) {
+                let at = random(bytes.len());
+                match random(3) {
+                    0 => bytes[at] = u8::try_from(random(256)).unwrap(),
+                    1 => drop(bytes.remove(at)),
+                    _ => bytes.extend_from_slice(seeds[random(seeds.len())]),
+                }
+                if bytes.is_empty() {
+                    break;
+                }
+            }
+            let text = String::from_utf8_lossy(&bytes);
+            let said = serde_json::from_str::<Value>(&text);
+            let answer = hear(&desk, ("b", false), &text);
+            while let Some(wish) = desk.live.wish() {
+                assert_eq!(wish, "stop", "{text}");
+                assert_eq!(said.as_ref().unwrap()["wish"], "stop", "{text}");
+            }
+            // what is no message is answered
+            assert!(said.is_ok() || answer.is_some(), "{text}");
+            let _ = hear(&desk, ("a", true), &text);
+            while let Some(wish) = desk.live.wish() {
+                assert!(desk.program.knows(&wish), "{text}");
+            }
+        }
+        std::fs::remove_dir_all(dir).unwrap();
+    }
+}

@@ -71,7 +71,7 @@ fn run(
     args.check_camera()?;
     args.check_keys(seat.is_some())?;
     let (prepared, asked, at) = begun(args, earlier, task)?;
-    let device = at.map(|at| connected(args, &at, &prepared, task)).transpose()?;
+    let device = at.map(|at| connected(args, &at, (&prepared, seat), task)).transpose()?;
     let dir = match &args.out {
         Some(dir) => dir.clone(),
         None => {
@@ -107,11 +107,11 @@ fn run(
     Ok(Outcome { summary, dir, failure })
 }
 
-/// The head at a port. A real one is armed by a person, who has to be there.
+/// The head at a port. A real one is armed by a person, who has to be there: at a terminal, or where he has a seat.
 fn connected(
     args: &TraceArgs,
     at: &At,
-    prepared: &Prepared,
+    (prepared, seat): (&Prepared, Option<&dyn Seat>),
     task: Task<'_>,
 ) -> Result<ByEncoders<Device>, Failure> {
     let mut device = head(at, &prepared.driving.rig, prepared.driving.pose, task.stop)?;
@@ -119,7 +119,8 @@ fn connected(
     if !device.rig().is_homed() {
         return Err(unhomed());
     }
-    if device.rig().wants_a_person() && !args.dry_run && !std::io::stdin().is_terminal() {
+    let is_there = seat.is_some() || std::io::stdin().is_terminal();
+    if device.rig().wants_a_person() && !args.dry_run && !is_there {
         return Err(nobody_arms("start it in one, or with --dry-run"));
     }
     if !args.dry_run {

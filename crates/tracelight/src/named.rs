@@ -106,6 +106,24 @@ pub(crate) fn rig_or_port(name: &str) -> Result<(RigConfig, Option<At>), Failure
     }
 }
 
+/// A name of a head as it is everywhere: files from the root.
+pub(crate) fn from_root(name: &str) -> String {
+    let whole = |file: &str| {
+        let path = std::path::absolute(file).ok().filter(|_| std::path::Path::new(file).is_file());
+        path.map(|path| path.to_string_lossy().into_owned())
+    };
+    let behind = || {
+        let (before, file) = name.rsplit_once(':')?;
+        Some(format!("{before}:{}", whole(file)?))
+    };
+    whole(name).or_else(behind).unwrap_or_else(|| name.to_owned())
+}
+
+/// The head that is at a port by a name of both; that of the preset `report` where it does not say. `None` of a name without a port.
+pub(crate) fn head_at_port(name: &str) -> Option<&str> {
+    rigfile::at_port(name, is_device).map(|(_, head)| head.unwrap_or("report"))
+}
+
 /// The port that a name means, which may say whose head is there.
 pub(crate) fn port(name: &str) -> PathBuf {
     rigfile::at_port(name, is_device).map_or(name, |(port, _)| port).into()

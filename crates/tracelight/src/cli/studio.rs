@@ -7,12 +7,14 @@ use clap::Args;
 use serde_json::{Value, json};
 use tracelight_files as files;
 use tracelight_operator::{self as operator, Bar};
+use tracelight_port::examine;
 use tracelight_sim::RigConfig;
-use tracelight_studio::{Invitation, Performed, Program, Seat, open};
+use tracelight_studio::{Head, Invitation, Performed, Program, Seat, open};
 use tracelight_task::{Failure, Progress, Stop, Task};
 
 use crate::cli::answer::{Answer, PerformsWith, Voice};
 use crate::cli::trace;
+use crate::named;
 use tracelight_flags::each;
 
 /// Open the studio: a page in the browser where a picture is placed on the wall, planned and traced on the simulated rig
@@ -21,7 +23,7 @@ use tracelight_flags::each;
 /// command line, which it shows; its pictures and runs lie in a folder.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Examples: tracelight studio\n          tracelight studio examples/sign.svg --folder out/studio --no-open\n          tracelight studio --lan"
+    after_help = "Examples: tracelight studio\n          tracelight studio examples/sign.svg --folder out/studio --no-open\n          tracelight studio --lan\n          tracelight studio --rig /dev/ttyACM0:my-head.toml"
 )]
 pub(crate) struct StudioArgs {
     /// A picture or a drawing to begin with
@@ -29,6 +31,10 @@ pub(crate) struct StudioArgs {
     /// Port of this computer at which the page is; 0 takes any that is free
     #[arg(long, value_name = "N", default_value_t = 4460)]
     port: u16,
+    /// The head that Run draws with, as of trace: a rig file, emulated or emulated:RIG, or the head at a board's port, PORT:RIG, which has to be homed. Trace it
+    /// simulates that head [default: the preset report, simulated]
+    #[arg(long, value_name = "RIG.toml|PRESET|PORT")]
+    rig: Option<String>,
     /// Let devices of the network in that are invited, such as a phone, by https at the next port; a code for the first one's camera is printed
     #[arg(long)]
     lan: bool,
@@ -59,11 +65,18 @@ impl operator::Seat for Attended<'_> {
 }
 
 /// The commands that the page has done.
-struct Commands(PerformsWith);
+struct Commands {
+    performs: PerformsWith,
+    head: Option<Head>,
+}
 
 impl Program for Commands {
     fn rigs(&self) -> Vec<String> {
         RigConfig::presets().into_iter().map(|preset| preset.name).collect()
+    }
+
+    fn head(&self) -> Option<&Head> {
+        self.head.as_ref()
     }
 
     fn knows(&self, wish: &str) -> bool {
@@ -78,7 +91,7 @@ impl Program for Commands {
     ) -> Result<Performed, Failure> {
         let attended = seat.map(Attended);
         let seat = attended.as_ref().map(|attended| attended as &dyn operator::Seat);
-        let Answer { json, failure, .. } = (self.0)(arguments, seat, Task { progress, stop })?;
+        let Answer { json, failure, .. } = (self.performs)(arguments, seat, Task { progress, stop })?;
         Ok(Performed { json, failure })
     }
 }
@@ -86,7 +99,8 @@ impl Program for Commands {
 pub(crate) fn run(args: &StudioArgs, performs: PerformsWith, stop: &Stop) -> Result<Answer, Failure> {
     let bar = Bar::new(args.voice.quiet);
     let folder = folder(args.folder.as_deref())?;
-    let studio = open(args.port, args.lan, &folder, Box::new(Commands(performs)))?;
+    let head = args.rig.as_deref().map(|name| head(name, &bar, stop)).transpose()?;
+    let studio = open(args.port, args.lan, &folder, Box::new(Commands { performs, head }))?;
     let mut address = studio.address();
     if let Some(path) = &args.picture {
         let id = studio.add(path, &files::read(path)?)?;
@@ -105,6 +119,24 @@ pub(crate) fn run(args: &StudioArgs, performs: PerformsWith, stop: &Stop) -> Res
         format!("the studio is closed; its pictures and runs are in {}", folder.display()),
         json.to_string(),
     ))
+}
+
+/// The head that the studio is opened for. Of a board that cannot be asked now it is taken that its light is real.
+///
+/// # Errors
+/// What is wrong with its name or its file.
+fn head(name: &str, bar: &Bar, stop: &Stop) -> Result<Head, Failure> {
+    let draws_as = named::from_root(name);
+    let (_, at) = named::rig_or_port(&draws_as)?;
+    let planned_as = named::head_at_port(&draws_as).unwrap_or(&draws_as).to_owned();
+    let is_real = at.as_ref().is_some_and(|at| match examine(&at.port, stop) {
+        Ok(examined) => examined.board.wants_a_person(),
+        Err(failure) => {
+            bar.say(&format!("note: {}; a head that is real is taken to be there", failure.message));
+            true
+        }
+    });
+    Ok(Head { draws_as, planned_as, is_at_port: at.is_some(), is_real })
 }
 
 /// Says how a phone joins.

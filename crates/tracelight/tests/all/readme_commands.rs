@@ -14,9 +14,10 @@ use crate::house_rules::sources;
 use crate::support::{folder, root};
 
 /// Lines that cannot run here, exactly as they stand, and why.
-const NOT_RUN: [(&str, &str); 24] = [
+const NOT_RUN: [(&str, &str); 25] = [
     ("tracelight studio", "opens a browser"),
     ("tracelight studio --lan", "opens a browser"),
+    ("tracelight studio --rig /dev/ttyACM0:my-head.toml", "a real board"),
     ("tracelight studio examples/sign.svg --folder out/studio --no-open", "waits for Ctrl-C"),
     ("tracelight home --by-stops --rig /dev/ttyACM0:my-head.toml", "a real board"),
     ("cargo test --workspace", "it runs this test"),

@@ -127,6 +127,42 @@ fn a_wrong_value_is_told_by_the_parser_and_a_picture_that_is_none_by_its_reader(
 }
 
 #[test]
+fn who_is_slow_is_not_waited_for_and_keeps_nobody_from_being_answered() {
+    let served = Served::new("studio-slow", &[]);
+    let slow = |said: &str| {
+        let mut stream = TcpStream::connect(&served.at).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(40))).unwrap();
+        stream.write_all(said.replace("HOST", &served.at).as_bytes()).unwrap();
+        stream
+    };
+    let began = Instant::now();
+    let mut all: Vec<TcpStream> = (0..100).map(|_| slow("GET / HTTP/1.1\r\nhost: HOST\r\nx-")).collect();
+    all.push(slow("POST /api/v1/plans HTTP/1.1\r\nhost: HOST\r\ncontent-length: 100\r\n\r\n{"));
+    all.push(slow(
+        "POST /api/v1/pictures?name=x.png HTTP/1.1\r\nhost: HOST\r\ncontent-length: 50000000\r\n\r\nx",
+    ));
+    // what is sent with stop is not waited for
+    let mut stop = slow("POST /api/v1/stop HTTP/1.1\r\nhost: HOST\r\ncontent-length: 100\r\n\r\n{");
+    let mut answer = [0; 12];
+    stop.read_exact(&mut answer).unwrap();
+    assert!(answer == *b"HTTP/1.1 200" && began.elapsed() < Duration::from_secs(5), "{:?}", began.elapsed());
+    let (status, _) = served.ask("GET", "/", b"");
+    assert!(
+        status == 200 && began.elapsed() < Duration::from_secs(5),
+        "{status} after {:?}",
+        began.elapsed()
+    );
+    for mut stream in all {
+        let mut told = Vec::new();
+        // closed, or broken off: the end of it either way
+        let _ = stream.read_to_end(&mut told);
+        let told = String::from_utf8_lossy(&told);
+        assert!(told.is_empty() || told.starts_with("HTTP/1.1 408"), "{told}");
+    }
+    assert!(began.elapsed() < Duration::from_secs(30), "the last one is let go after {:?}", began.elapsed());
+}
+
+#[test]
 #[cfg(unix)]
 fn ctrl_c_ends_it_soon_and_another_one_may_have_its_port() {
     use nix::sys::signal::{Signal, kill};
