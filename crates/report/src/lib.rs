@@ -10,6 +10,7 @@
 //! | `trace.png` | [`paint`] |
 //! | `seen.csv` | [`seen_csv`], where a camera followed the spot |
 //! | `report.html` | [`page()`] |
+//! | `trace --film` | [`film()`] |
 //! | `plan --preview`, `strokes --stages` | [`preview()`], [`stages`] |
 //! | a drawing | [`drawing`] |
 
@@ -22,6 +23,7 @@ mod csv;
 pub mod drawing;
 mod error;
 mod events;
+mod film;
 mod finished;
 #[cfg(test)]
 mod fixture;
@@ -43,6 +45,7 @@ mod words;
 pub use csv::{fault_csv, trace_csv};
 pub use error::EncodeError;
 pub use events::{Event, events};
+pub use film::{Film, film};
 pub use finished::{Finished, Picture, PointFigures, Setting, Target, Timing};
 pub use head_gcode::{AxisUnit, BoardAxis, HeadGcode, HeadProgram, head_gcode};
 pub use log::{LogMeta, LogWriter, Recovered, index, recover};

@@ -13,4 +13,4 @@ pub use folder::{Records, open};
 pub use journal::{Asked, Before, Input, Kept, NOTHING_LEFT, Progress, read};
 pub use listed::{ListedRun, check_newest, runs};
 pub use table::table;
-pub use written::{Told, write};
+pub use written::{Told, target, write};

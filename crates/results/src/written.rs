@@ -29,6 +29,18 @@ pub struct Told<'a> {
     pub today: String,
 }
 
+/// Where a job is drawn, and how large.
+#[must_use]
+pub fn target(prepared: &Prepared) -> Target {
+    let Prepared { placed, driving, .. } = prepared;
+    Target {
+        width_m: placed.size_m.0,
+        height_m: placed.size_m.1,
+        middle: placed.centre(),
+        distance_m: driving.pose.distance_m,
+    }
+}
+
 /// Writes what a run came to, the summary last.
 ///
 /// # Errors
@@ -56,12 +68,7 @@ pub fn write(
             None => Picture { raster, target_from_pixel: placed.target_from_sheet },
         }),
         quality: sketch.quality.as_ref(),
-        target: Target {
-            width_m: placed.size_m.0,
-            height_m: placed.size_m.1,
-            middle: placed.centre(),
-            distance_m: driving.pose.distance_m,
-        },
+        target: target(prepared),
         standing: Standing::of(drawing, driving),
         align: placed.align.as_ref(),
         left_out: placed.left_out,

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use tracelight_camera::{Opened, shown};
 use tracelight_eye::power::unhomed;
 use tracelight_eye::trouble::emulate;
-use tracelight_files::ResultFolder;
+use tracelight_files::{self as files, ResultFolder};
 use tracelight_job::{
     Hands, Head, Nobody, Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall,
 };
 use tracelight_operator::{AtWall, Attending, Seat, nobody_arms};
 use tracelight_pipeline::told_places;
 use tracelight_port::{At, Device, head};
-use tracelight_report::{LogMeta, Summary};
+use tracelight_report::{Film, LogMeta, Summary, film};
 use tracelight_results::{self as results, Asked, Before, Records, Told, write};
 use tracelight_sim::ByEncoders;
 use tracelight_stroke::Vec2;
@@ -102,9 +102,24 @@ fn run(
     };
     let summary = write(&folder, &told, &prepared, &ran)?;
     folder.finish()?;
+    put_film(args, &name, &prepared, &ran)?;
     // also who wants it to end while results are written is told so
     let failure = ran.failure.take().or_else(|| task.check().err());
     Ok(Outcome { summary, dir, failure })
+}
+
+/// Writes the moving picture, where one was asked for.
+fn put_film(args: &TraceArgs, name: &str, prepared: &Prepared, ran: &Ran) -> Result<(), Failure> {
+    let Some(path) = &args.film else { return Ok(()) };
+    let target = results::target(prepared);
+    let film = film(&Film { name, target, run: &ran.last, simulated: ran.origin.simulated });
+    let none = || {
+        let message = format!(
+            "{path} is not written: the spot was nowhere on the wall. Everything else of the run is there"
+        );
+        Failure::failed("cannot-write", message)
+    };
+    files::write(path, film.ok_or_else(none)?)
 }
 
 /// The head at a port. A real one is armed by a person, who has to be there: at a terminal, or where he has a seat.

@@ -103,6 +103,9 @@ pub(crate) struct TraceArgs {
     /// Folder for the results [default: out/<the picture's name>/, or the first of …-2/, …-3/ that is not there yet]
     #[arg(help_heading = "Output", long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Write a moving picture of the run too: an SVG that plays by itself in browsers and on pages, at most 12 s long
+    #[arg(help_heading = "Output", long, value_name = "FILE.svg", value_parser = film)]
+    pub(crate) film: Option<String>,
     /// Everything, with the laser's gate held dark
     #[arg(help_heading = "Rig and law", long)]
     pub(crate) dry_run: bool,
@@ -117,6 +120,12 @@ pub(crate) struct TraceArgs {
     /// The command as it was given, without the program's name.
     #[arg(skip)]
     pub(crate) typed: Vec<String>,
+}
+
+/// The name of a film.
+fn film(text: &str) -> Result<String, String> {
+    let is_svg = text.to_ascii_lowercase().ends_with(".svg");
+    is_svg.then(|| text.to_owned()).ok_or_else(|| format!("{text} does not end in .svg, which a film is"))
 }
 
 impl TraceArgs {

@@ -53,6 +53,8 @@ pub(crate) fn run(
     // what went wrong then does not go wrong again
     request.follow.sim_trouble.clear();
     request.open = args.open;
+    // it is of the run before
+    request.film = None;
     request.out = args.out.as_deref().map(whole).transpose()?;
     request.voice = args.voice;
     if let Some(why) = request.cannot_resume() {

@@ -20,6 +20,7 @@ mod every_command;
 mod examples;
 mod extensions;
 mod fault_page;
+mod film;
 mod formats;
 mod friction;
 mod gang;
