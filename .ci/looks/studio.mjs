@@ -158,7 +158,7 @@ const attend = async () => {
   await page.click('#refuse')
   await until(other, 'who is refused is not told', () => /keeps it/.test(document.getElementById('said').textContent))
   await ended(page)
-  check(/Stopped/.test(await page.textContent('#attended')), 'it is not told how it ended')
+  await until(page, 'it is not told how it ended', () => /Stopped/.test(document.getElementById('attended').textContent))
   await other.context().close()
   await page.context().close()
   return took
@@ -217,7 +217,7 @@ const steps = async () => {
 const keys = async () => {
   const page = await opened(1280, 900)
   const all = ['Enter', ' ', 'a', 'f', 't', 'r', 'n', 'p', '.', ',', '+', 'PageDown', 'ArrowRight', 'Tab']
-  for (const view of ['', '#run', '#runs', '#devices']) {
+  for (const view of ['', '#run', '#runs', '#lab', '#devices']) {
     await page.goto(address + view)
     if (view === '#run') await ready(page)
     await page.evaluate(() => /** @type {HTMLElement} */ (document.activeElement)?.blur())
@@ -347,12 +347,38 @@ const port = async at => {
   await page.context().close()
 }
 
+// Experiments whose gains are dragged, a formula that is none, a lesson that is answered wrong, then right.
+const lab = async () => {
+  const page = await opened(1280, 900)
+  await page.goto(address + '#lab')
+  await until(page, 'no step is plotted', () => document.querySelector('#lab-plot img')?.complete && /overshoot/.test(document.getElementById('lab-words').textContent))
+  const before = await page.textContent('#lab-words')
+  await page.locator('[name=kp]').fill('60')
+  await until(page, 'a gain that is dragged changes nothing', `document.getElementById('lab-words').textContent !== ${JSON.stringify(before)} && /kp=60/.test(document.getElementById('lab-command').textContent)`)
+  await page.goto(address + '#lab=bode')
+  await until(page, 'no margins are told', () => /margin/.test(document.getElementById('lab-words').textContent))
+  await page.fill('[name=systems]', 'K11*(')
+  await until(page, 'what is no formula is not told', () => !document.getElementById('lab-problem').hidden)
+  await page.goto(address + '#lab=lesson-1')
+  await until(page, 'no question is asked', () => document.querySelector('[name=sticks]'))
+  const answers = async (kp, sticks) => {
+    await page.fill('[name=kp]', kp)
+    await page.fill('[name=sticks]', sticks)
+    await page.getByText('Check my answer').click()
+  }
+  await answers('10', '4')
+  await until(page, 'a wrong answer is not told', () => /Not yet/.test(document.getElementById('lab-verdict').textContent))
+  await answers('18,8', '2.16')
+  await until(page, 'a right answer is not told', () => /Right/.test(document.getElementById('lab-verdict').textContent))
+  await page.context().close()
+}
+
 const looks = async () => {
   for (const [width, height] of [[1280, 800], [820, 1100], [390, 844]]) {
     for (const theme of ['light', 'dark', 'room']) {
       const page = await opened(width, height)
       await page.evaluate(name => localStorage.setItem('theme', name), theme)
-      for (const view of ['', '#run', '#runs', '#compare=house,house-2', '#devices']) {
+      for (const view of ['', '#run', '#runs', '#compare=house,house-2', '#lab', '#lab=lesson-2', '#devices']) {
         await page.goto(address + view)
         await page.reload()
         await page.waitForTimeout(400)
@@ -374,6 +400,7 @@ const stopped = await attend()
 const dark = await lost()
 await steps()
 await history()
+await lab()
 const far = await devices()
 if (process.argv[4]) await port(process.argv[4])
 await keys()

@@ -206,6 +206,16 @@ impl Asked {
         Ok(())
     }
 
+    /// Whether its command names every file that it was read from by its whole path.
+    #[must_use]
+    pub fn is_from_root(&self) -> bool {
+        let is_whole = |input: &Input| {
+            let path = input.path.to_string_lossy();
+            self.arguments.iter().any(|argument| argument.contains(&*path))
+        };
+        !self.inputs.is_empty() && self.inputs.iter().all(is_whole)
+    }
+
     /// Refuses to go on where a file that the job was read from is another one now.
     ///
     /// # Errors

@@ -10,12 +10,13 @@
  *   head: { spot_mm: number, best_distance_m: number, distance_m: number }, sequence: Stroke[] }} PlanFigures
  * @typedef {{ id: number, command: string, plan: PlanFigures, remarks: string[], points: string }} Plan
  * @typedef {{ id: number, run: string, picture: string, flags: Flags | null, stage: string, done: number, of: number, remarks: string[], over: boolean, live: boolean, answer: any, failure: Failure | null }} Job
- * @typedef {{ id: string, folder: string, begun: string, picture: string | null, flags: Flags | null, files: { name: string, bytes: number }[], width_m: number, height_m: number, strokes: number, duration_s: number | null,
+ * @typedef {{ id: string, folder: string, begun: string, picture: string | null, flags: Flags | null, rig: string | null, mode: string, points: { count: number, done: number } | null, files: { name: string, bytes: number }[], width_m: number, height_m: number, strokes: number, duration_s: number | null,
  *   rms_mm: number | null, max_mm: number | null, finished: boolean, running: boolean, left: boolean, went_on_in: string | null, goes_on_with: string | null, progress: { stroke: number, strokes: number } | null }} RunTold
  * @typedef {{ first: RunTold, second: RunTold, same_drawing: boolean, only_first_asked: string[], only_second_asked: string[], figures: { name: string, unit: string, digits: number, first: number | null, second: number | null, difference: number | null }[] }} Compared
+ * @typedef {{ command: string, answer: any, words: string, svg: string, failure: Failure | null }} Experiment
  * @typedef {{ name: string, planned_as: string, at_port: boolean, real: boolean }} Head
  * @typedef {{ id: number, name: string, role: 'operator' | 'viewer', lines: number, seen_s: number }} Device
- * @typedef {{ role: 'operator' | 'viewer' | null, local: boolean, lan: { addresses: string[], fingerprint: string } | null, devices: Device[] | null }} Session
+ * @typedef {{ role: 'operator' | 'viewer' | null, local: boolean, device: number, lan: { addresses: string[], fingerprint: string } | null, devices: Device[] | null }} Session
  * @typedef {{ role: string, links: string[], code_svg: string | null, fingerprint: string, holds_s: number }} Invitation
  */
 
@@ -66,6 +67,8 @@ export const attend = (asked) => post('/jobs', { ...asked, attended: true })
 export const job = async () => (await json('/jobs/current')).job
 /** Moves the head at the port by hand, dark. @param {{ move: string, by?: string }} asked @returns {Promise<{ homed: boolean, pan_deg: number, tilt_deg: number }>} */
 export const moveHead = (asked) => post('/head', asked)
+/** An experiment of the lab. @param {{ command: string, of: string[], flags: Flags }} asked @returns {Promise<Experiment>} */
+export const experiment = (asked) => post('/lab', asked)
 export const stop = () => post('/stop', {})
 /** @returns {Promise<RunTold[]>} */
 export const runs = async () => (await json('/runs')).runs

@@ -38,6 +38,8 @@ export class Devices {
   constructor(problem) {
     this.problem = problem
     this.timer = 0
+    this.count = Infinity
+    this.own = 0
     by('invite-operator').addEventListener('click', () => this.#invite('operator'))
     by('invite-viewer').addEventListener('click', () => this.#invite('viewer'))
   }
@@ -59,13 +61,18 @@ export class Devices {
       const session = await api.session()
       this.problem(null)
       const { lan, devices } = session
+      this.own = session.device
       by('inviting').hidden = !lan
       by('devices-words').textContent = lan
         ? `A phone at the wall, or another computer of this network, finds the studio at ${lan.addresses.join(' or ')}. Only devices that were invited may ask anything; any device may stop.`
         : session.role === 'operator'
           ? 'No other device reaches this studio now. Close it, and start it with tracelight studio --lan: then a phone that you invite here operates it at the wall.'
           : 'This device looks on, and may stop.'
-      by('nobody').hidden = (devices ?? []).length > 0
+      const count = (devices ?? []).length
+      // what was shown is used up
+      if (count > this.count) by('invitation').hidden = true
+      this.count = count
+      by('nobody').hidden = count > 0
       by('device-list').replaceChildren(...(devices ?? []).map((device) => this.#row(device)))
     } catch (error) {
       this.problem(error)
@@ -76,13 +83,13 @@ export class Devices {
   #row(device) {
     const minutes = Math.floor(device.seen_s / 60)
     const here = device.lines > 0 ? 'attends a job now' : minutes < 1 ? 'seen just now' : `seen ${minutes} min ago`
-    const button = element('button', { type: 'button', class: 'plain', text: 'Send away', 'aria-label': `Send away: ${device.name}` })
+    const button = element('button', { type: 'button', class: 'plain', text: 'Remove', 'aria-label': `Remove: ${device.name}` })
     button.addEventListener('click', async () => {
       await api.sendAway(device.id).catch(this.problem)
       this.#look()
     })
     const role = device.role === 'operator' ? 'may operate' : 'looks on'
-    return element('li', {}, element('div', {}, element('strong', { text: device.name }), element('p', { class: 'under', text: `${role} · ${here}` })), button)
+    return element('li', {}, element('div', {}, element('strong', { text: device.id === this.own ? `${device.name}: this device` : device.name }), element('p', { class: 'under', text: `${role} · ${here}` })), button)
   }
 
   /** @param {'operator' | 'viewer'} role */

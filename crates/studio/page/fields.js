@@ -38,7 +38,7 @@ const GROUPS = [
       { flag: 'speed', label: 'Speed of the spot', hint: '1ft/s' },
       { flag: 'lit_speed', label: 'At corners', choices: [['', 'fastest'], ['exact', 'one constant speed'], ['stops', 'stop at each']] },
       { flag: 'order', label: 'Order', choices: [['', 'least time'], ['layer', 'layer by layer'], ['reading', 'row by row']] },
-      { flag: 'rig', label: 'Head', choices: [['', 'report: the 2006 report’s'], ['worn', 'worn: with play and age'], ['stepper', 'stepper: two stepper motors'], ['servo', 'servo: hobby servos']] },
+      { flag: 'rig', label: 'Head', choices: [['', 'report: as of 2006'], ['worn', 'worn: play, age'], ['stepper', 'stepper: two stepper motors'], ['servo', 'servo: hobby servos']] },
     ],
   },
 ]

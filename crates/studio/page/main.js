@@ -6,7 +6,9 @@ import { Fields, asLabelled } from './fields.js'
 import { showCompared } from './compare.js'
 import { HeadPad } from './head.js'
 import { Devices, arrive } from './devices.js'
+import { Lab } from './lab.js'
 import { keep, kept, themes } from './kept.js'
+import { Pictures } from './pictures.js'
 import { Runs, element, follow, showResult } from './runs.js'
 import { Run } from './run.js'
 import { Store } from './store.js'
@@ -22,7 +24,7 @@ const NUDGE_M = 1e-3
 const LOOK = 1000
 /** In how many seconds a drawing is played while it is traced. */
 const PLAYED_S = 6
-const VIEWS = ['place', 'run', 'runs', 'compare', 'devices']
+const VIEWS = ['place', 'run', 'runs', 'compare', 'lab', 'devices']
 
 /** @template {HTMLElement} T @param {string} id @returns {T} */
 const by = (id) => /** @type {T} */ (document.getElementById(id))
@@ -32,13 +34,14 @@ const operates = session?.role === 'operator'
 const chosen = new URLSearchParams(location.hash.slice(1)).get('picture')
 const store = new Store(chosen ? { picture: chosen, flags: {} } : earlier())
 let folder = ''
-/** @type {api.Head | null} the head that the studio was opened for */
-let head = null
+/** @type {api.Head | null | undefined} the head that the studio was opened for; undefined as long as nobody has told */
+let head
 /** @type {api.Plan | null} */
 let plan = null
 /** @type {api.Flags} what it was asked by */
 let planFlags = {}
 let tracing = false
+let shownView = ''
 
 const wall = new Wall(by('wall'), (box, done) => {
   const flags = placed(box)
@@ -90,15 +93,18 @@ const run = new Run(page, {
     if (left_s < 0) timeline.rest()
     else timeline.to(left_s)
   },
-  stroke: (number) => wall.upTo(number),
+  stroke: (number, share, lit) => wall.within(number, share, lit),
   mark: (at) => wall.marks(at),
   ended: (job) => showResult(by('attended'), job),
   problem,
   lamp,
+  heads: () => heads(),
 })
 
 run.operates = operates
+const pictures = new Pictures({ choose, chosen: () => store.asked.picture, problem, operates })
 const pad = new HeadPad(problem)
+const lab = new Lab((error) => told('lab-problem', error))
 const devices = new Devices((error) => told('devices-problem', error))
 const runs = new Runs({
   again: (of) => take_up(of, '#place'),
@@ -214,6 +220,7 @@ function told(where, error) {
 /** Traces what is shown. */
 async function trace() {
   if (tracing) return
+  if (run.busy()) return problem(new api.Refusal({ code: 'busy', message: 'A job is operated in Run: stop it and end it, or wait until it is done.' }, 409))
   setTracing(true)
   by('result').hidden = true
   problem(null)
@@ -285,59 +292,20 @@ async function stop() {
   setTimeout(() => by('stop').classList.remove('pressed'), 300)
 }
 
-/** Takes a file in. @param {File | null | undefined} file */
-async function take(file) {
-  if (!file) return
-  try {
-    const picture = await api.add(file)
-    await list()
-    choose(picture)
-  } catch (error) {
-    problem(error)
-  }
-}
+/** Flags without what is left out of a command, in one order. @param {api.Flags} flags */
+const essence = (flags) => JSON.stringify(Object.entries(flags).filter(([, value]) => value !== '' && value !== false && value !== null).sort())
 
 /** Puts a picture on the wall. @param {string} picture @param {api.Flags} [flags] */
 function choose(picture, flags) {
   const { distance, rig } = store.asked.flags
   // what was asked of one picture is not asked of another, but where the head stands
   const next = { picture, flags: flags ?? { ...(distance ? { distance } : {}), ...(rig ? { rig } : {}) } }
-  if (JSON.stringify(next) === JSON.stringify(store.asked)) return
+  if (next.picture === store.asked.picture && essence(next.flags) === essence(store.asked.flags)) return
   problem(null)
   nothing()
   wall.first = true
-  run.goOnWith(null)
+  run.anew()
   store.set(next)
-}
-
-/** Deletes a picture; the one on the wall gives way to the house. @param {string} id */
-async function drop(id) {
-  try {
-    const name = await api.discard('pictures', id)
-    await list()
-    if (store.asked.picture === id) choose('house.png')
-    const undo = element('button', { type: 'button', class: 'plain', text: 'Undo' })
-    undo.addEventListener('click', () => api.restore('pictures', name).then(list).then(() => problem(null), problem))
-    by('problem').hidden = false
-    by('problem').replaceChildren(element('span', { text: `${id} is in the trash of the studio’s folder. ` }), undo)
-  } catch (error) {
-    problem(error)
-  }
-}
-
-async function list() {
-  const all = await api.pictures()
-  by('pictures').replaceChildren(
-    ...all.slice(0, 40).map((picture) => {
-      const button = element('button', { type: 'button', class: 'picture', title: picture.id, 'aria-pressed': String(picture.id === store.asked.picture) })
-      button.append(picture.shows ? element('img', { src: api.pictureUrl(picture.id), alt: '', loading: 'lazy' }) : element('span', { class: 'kind', text: picture.id.split('.').pop() }), element('span', { text: picture.id }))
-      button.addEventListener('click', () => choose(picture.id))
-      if (picture.example || !operates) return element('li', {}, button)
-      const away = element('button', { type: 'button', class: 'away', text: '×', title: 'Delete', 'aria-label': `Delete ${picture.id}` })
-      away.addEventListener('click', () => drop(picture.id))
-      return element('li', { class: 'given' }, button, away)
-    }),
-  )
 }
 
 /** Shows the view that the address names. */
@@ -346,19 +314,23 @@ function view() {
   const is = session?.role === null ? 'outside' : VIEWS.includes(named) ? named : 'place'
   const attends = is === 'run'
   by('place').hidden = is !== 'place' && !attends
-  for (const id of ['runs', 'compare', 'devices', 'outside']) by(id).hidden = is !== id
+  for (const id of ['runs', 'compare', 'lab', 'devices', 'outside']) by(id).hidden = is !== id
   by('placing').hidden = attends
   by('attend').hidden = !attends
   document.body.classList.toggle('attending', attends)
   document.body.classList.toggle('looks-on', !operates)
+  by('fields').toggleAttribute('inert', !operates)
   wall.fixed = attends || !operates
   wall.dirty = true
   const current = is === 'compare' ? 'runs' : is
-  for (const id of ['place', 'run', 'runs', 'devices']) {
+  for (const id of ['place', 'run', 'runs', 'lab', 'devices']) {
     if (id === current) by(`to-${id}`).setAttribute('aria-current', 'page')
     else by(`to-${id}`).removeAttribute('aria-current')
   }
+  if (is !== shownView) scrollTo(0, 0)
+  shownView = is
   devices.show(is === 'devices')
+  if (is === 'lab') lab.show(more ?? '')
   if (is === 'runs') runs.show(folder).catch((error) => told('runs-problem', error))
   if (is === 'compare') {
     const [first, second] = decodeURIComponent(more ?? '').split(',')
@@ -400,15 +372,17 @@ function key(event) {
   if (event.key === '0') wall.fit()
 }
 
-/** Says whose light it is: that of the head that the studio was opened for, or a simulated one's. */
+/** Says whose light it is: that of the head that draws, or would: the one that the studio was opened for, or a simulated one. */
 function heads() {
-  const is_chosen = Boolean(store.asked.flags.rig)
-  const at_port = head !== null && head.at_port && !is_chosen
-  const is_real = at_port && head !== null && head.real
-  by('ribbon').textContent = is_real ? `Real: ${head?.name}` : at_port ? `Practice: ${head?.name}` : 'Simulated'
+  const { name, at_port, real } = head ?? { name: '', at_port: false, real: false }
+  const by_job = run.on && run.began
+  const draws = by_job ? run.head !== null : at_port && (run.rest ? run.rest.rig === name : !store.asked.flags.rig)
+  const is_real = draws && (by_job ? run.head?.real === true : real)
+  const unknown = head === undefined || (run.on && !run.began && at_port)
+  by('ribbon').textContent = unknown ? '? Head' : is_real ? `Real: ${name}` : draws ? `Practice: ${name}` : 'Simulated'
   by('ribbon').classList.toggle('real', is_real)
-  run.atPort(at_port, is_real)
-  pad.show(at_port && operates)
+  run.atPort(draws, is_real)
+  pad.show(draws && operates)
 }
 
 store.watch((asked) => {
@@ -418,20 +392,13 @@ store.watch((asked) => {
   by('result').hidden = true
   keep('sessionStorage', 'asked', JSON.stringify(asked))
   wall.place({ ...boxOf(asked.flags), width: wall.box.width, height: wall.box.height })
-  for (const button of by('pictures').querySelectorAll('button')) button.setAttribute('aria-pressed', String(button.title === asked.picture))
+  pictures.mark(asked.picture)
   by('name').textContent = asked.picture
   planSoon()
 })
 
 by('trace').addEventListener('click', trace)
 by('stop').addEventListener('click', stop)
-by('open').addEventListener('click', () => by('file').click())
-by('file').addEventListener('change', () => {
-  const input = /** @type {HTMLInputElement} */ (by('file'))
-  take(input.files?.[0])
-  // the same file may be taken again once it was changed
-  input.value = ''
-})
 by('copy').addEventListener('click', () => navigator.clipboard?.writeText(by('command').textContent ?? ''))
 by('zoom-in').addEventListener('click', () => wall.zoom(1.25))
 by('zoom-out').addEventListener('click', () => wall.zoom(0.8))
@@ -440,12 +407,10 @@ by('undo').addEventListener('click', () => store.undo())
 by('redo').addEventListener('click', () => store.redo())
 addEventListener('keydown', key)
 addEventListener('keyup', () => run.released())
-addEventListener('hashchange', view)
-addEventListener('paste', (event) => take(event.clipboardData?.files[0]))
-addEventListener('dragover', (event) => event.preventDefault())
-addEventListener('drop', (event) => {
-  event.preventDefault()
-  take(event.dataTransfer?.files[0])
+addEventListener('hashchange', () => {
+  // an invitation that is opened where the page is already
+  if (location.hash.startsWith('#join=')) location.reload()
+  else view()
 })
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => wall.redraw())
 
@@ -460,26 +425,47 @@ if (session?.role === null) {
   lamp('? Unknown')
 } else {
   planSoon(0)
-  list().catch(problem)
-  api.about().then((told) => {
-    folder = told.folder
-    head = told.head
-    if (head) fields.name('rig', `${head.name}: the one here`)
-    heads()
-  }).then(view, problem)
+  pictures.list().catch(problem)
+  about()
   look()
   setInterval(look, LOOK)
 }
 
+/** Asks what studio this is, until it is told. */
+async function about() {
+  try {
+    const told = await api.about()
+    folder = told.folder
+    head = told.head
+    if (head) fields.name('rig', `${head.name}: the one here`)
+    heads()
+    view()
+  } catch (error) {
+    problem(error)
+    setTimeout(about, 2 * LOOK)
+  }
+}
+
 /** Looks whether somebody traces: another page, or this one before it was loaded again. */
 async function look() {
-  if (tracing || run.on) return
-  const job = await api.job().catch(() => null)
-  if (!job || job.over || tracing || run.on) return
+  if (tracing || run.busy()) return
+  let job
+  try {
+    job = await api.job()
+  } catch {
+    // nobody tells what light there is
+    return lamp('? Unknown')
+  }
+  if (tracing || run.busy()) return
+  if (!job || job.over) return by('lamp').textContent?.startsWith('?') ? lamp('● Dark') : undefined
   if (job.live) {
-    // what is drawn is on the wall, whoever asked for it
+    // what is drawn is on the wall, whoever asked for it, and what was placed here comes back after it
+    const before = store.asked
     take_up(job, '#run')
-    return run.followed()
+    const during = JSON.stringify(store.asked)
+    await run.followed()
+    if (JSON.stringify(store.asked) === during) choose(before.picture, before.flags)
+    return
   }
   setTracing(true)
   await followed()

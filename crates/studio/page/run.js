@@ -19,7 +19,7 @@ const STATES = {
 }
 
 /**
- * @typedef {{ asked: () => { picture: string, flags: api.Flags }, at: (left_s: number, lit: boolean) => void, stroke: (number: number) => void, mark: (at: [number, number] | null) => void, ended: (job: api.Job) => void, problem: (error: unknown) => void, lamp: (text: string, lit: boolean) => void }} Hooks
+ * @typedef {{ asked: () => { picture: string, flags: api.Flags }, at: (left_s: number, lit: boolean) => void, stroke: (number: number, share: number, lit: boolean) => void, mark: (at: [number, number] | null) => void, ended: (job: api.Job) => void, problem: (error: unknown) => void, lamp: (text: string, lit: boolean) => void, heads: () => void }} Hooks
  *   what is shown; how long of the plan is left, s, −1 for nowhere, and whether there is light; the stroke that is drawn again and again; the place that is marked; how it ended
  */
 
@@ -40,6 +40,12 @@ export class Run {
     this.framing = false
     /** @type {api.RunTold | null} the run whose rest is to be drawn */
     this.rest = null
+    /** A job is followed to its end. */
+    this.follows = false
+    /** The job has told how far it is. */
+    this.began = false
+    /** @type {{ real: boolean } | null} the board at a port that draws the job, if one does */
+    this.head = null
     /** Whether a board at a port draws. */
     this.at_port = false
     /** Whether this device may operate anything. */
@@ -81,6 +87,19 @@ export class Run {
   goOnWith(run) {
     this.rest = run
     this.#modes()
+    this.hooks.heads()
+  }
+
+  /** Another drawing is on the wall: how the one before was to be drawn is not how this one is. */
+  anew() {
+    field('from-stroke').value = ''
+    by('attended').hidden = true
+    this.goOnWith(null)
+  }
+
+  /** Whether a job is on, or about to be. */
+  busy() {
+    return this.on || this.begins || this.follows
   }
 
   /** Says what draws: a head at a port keeps time by itself, and a real one is nobody's to hurry. @param {boolean} at_port @param {boolean} is_real */
@@ -156,20 +175,28 @@ export class Run {
 
   /** Follows the job that is on to its end; one that another page began too. */
   async followed() {
+    if (this.follows) return
+    this.follows = true
+    // until the job's line tells
+    this.hooks.lamp('? Unknown', false)
     this.live.open()
-    const ended = await follow(() => {})
+    const ended = await follow(() => {}, true).catch((error) => (this.hooks.problem(error), null))
+    this.follows = this.began = false
+    this.head = null
     this.on = this.mine = this.live.operates = this.framing = false
     this.state = ''
     this.live.close()
     this.#show()
-    this.hooks.lamp('● Dark', false)
+    this.hooks.lamp(ended ? '● Dark' : '? Unknown', false)
     this.hooks.at(-1, false)
     this.hooks.mark(null)
     this.point = null
     this.#wake()
-    // what was left is drawn, or another run has its rest
-    if (ended) this.goOnWith(null)
+    // what was left is drawn, or another run has its rest; what never began is still to be drawn
+    if (ended?.answer) this.goOnWith(null)
+    if (ended?.answer) field('from-stroke').value = ''
     if (ended) this.hooks.ended(ended)
+    this.hooks.heads()
   }
 
   /** Stops it: anybody may. */
@@ -239,8 +266,11 @@ export class Run {
       this.mine = this.live.operates = this.on && this.operates && operator === this.page
       this.#wake()
       by('asks').hidden = true
+      if (told.mode) this.mode = told.mode
       if (told.event === 'begun') {
         // nothing of the one before holds
+        this.began = false
+        this.head = null
         this.now = { event: 'progress' }
         this.state = ''
         this.point = null
@@ -251,7 +281,16 @@ export class Run {
       this.now = told
       this.heard = performance.now()
       this.state = told.state
+      if (!this.began) {
+        this.began = true
+        this.hooks.heads()
+      }
       this.#place()
+    } else if (told.event === 'head') {
+      this.head = { real: told.real }
+      this.hooks.heads()
+    } else if (told.event === 'over') {
+      this.on = this.mine = this.live.operates = false
     } else if (told.event === 'preflight') {
       by('checks').replaceChildren(...told.checks.map(check))
     } else if (told.event === 'frame') {
@@ -287,7 +326,7 @@ export class Run {
     const { now } = this
     if (this.framing || !(now.of_s > 0)) this.hooks.at(-1, false)
     else if (this.mode === 'trace') this.hooks.at(now.of_s - now.plan_s, now.gate)
-    else if (this.mode === 'step' && now.stroke) this.hooks.stroke(now.stroke)
+    else if (this.mode === 'step' && now.stroke) this.hooks.stroke(now.stroke, now.plan_s / now.of_s, now.gate)
     else this.hooks.at(-1, false)
   }
 
@@ -299,16 +338,17 @@ export class Run {
 
   /** What was told long ago says nothing of now. */
   #stale() {
-    if (this.on && performance.now() - this.heard > STALE) this.hooks.lamp('? Unknown', false)
+    if ((this.on || this.follows) && performance.now() - this.heard > STALE) this.hooks.lamp('? Unknown', false)
   }
 
   /** Where it is, in words. */
   #where() {
     const { now, point } = this
+    if (this.mine && ['ready', 'stopped'].includes(this.state)) return `Hold the left one for a second, then ${this.state === 'ready' ? 'Trace' : 'Go on'} within ten.`
     if (this.framing) return 'The frame, again and again'
     if (this.mode === 'points') return point ? `${point.kind} ${point.point} of ${point.points} · ${plain(point.x_mm, 0)}, ${plain(point.y_mm, 0)} mm` : ''
     const stroke = now.strokes > 0 && now.stroke ? `stroke ${now.stroke} of ${now.strokes}` : ''
-    const of = this.rest ? ' of the rest' : ''
+    const of = this.rest && now.strokes > 0 ? ' of the rest' : ''
     const at = now.of_s > 0 && this.mode === 'trace' ? `${time(now.plan_s)} of ${time(now.of_s)}` : ''
     return [stroke + of, at].filter(Boolean).join(' · ')
   }
@@ -317,11 +357,14 @@ export class Run {
     const { state, now, on, mine } = this
     const is_on = ON.includes(state)
     const armed = state === 'armed'
+    const begins = ['ready', 'unhomed', 'armed', ''].includes(state) && !(now.plan_s > 0)
     const lit = on && now.gate === true
     by('before').hidden = on
     by('during').hidden = !on
     document.body.classList.toggle('drawing', on)
     if (!on) return
+    // what is told of the one before is no news of this one
+    by('attended').hidden = true
     const left = armed ? ` ${Math.ceil(now.armed_s ?? 0)} s` : ''
     this.hooks.lamp(lit ? '☀ Light' : armed ? `◔ Armed${left}` : '● Dark', lit)
     by('state').textContent = state === 'tracing' && !lit ? 'Traces: a dark move' : (STATES[state] ?? 'Begins')
@@ -332,7 +375,7 @@ export class Run {
     by('arm').classList.toggle('is', armed)
     by('arm').textContent = armed ? `◔ Armed${left}` : 'Hold to arm'
     enable('go', mine && goes)
-    by('go').textContent = this.framing && !armed ? '▶ Draw it now' : armed && now.plan_s === 0 && this.mode === 'trace' && !this.framing ? '▶ Trace' : '▶ Go on'
+    by('go').textContent = this.framing && !armed ? '▶ Draw it now' : begins && !this.framing ? '▶ Trace' : '▶ Go on'
     enable('pause', mine && is_on && state !== 'pausing')
     enable('pause-now', mine && is_on)
     for (const id of ['next', 'previous', 'skip']) {

@@ -1,7 +1,7 @@
 // @ts-check
 /** Runs: the one that goes on, and those that were. */
 
-import { discard, job, restore, runFile, runs } from './api.js'
+import { Refusal, discard, job, restore, runFile, runs } from './api.js'
 import { length, plain, size, time } from './words.js'
 
 /** How often is asked how far a job is, ms. */
@@ -21,8 +21,8 @@ export function element(name, how = {}, ...children) {
   return made
 }
 
-/** Waits until the job is over, and tells how far it is. @param {(job: import('./api.js').Job) => void} told @returns {Promise<import('./api.js').Job | null>} */
-export async function follow(told) {
+/** Waits until the job is over, and tells how far it is; for as long as it takes where somebody attends it, whatever becomes of the line. @param {(job: import('./api.js').Job) => void} told @param {boolean} [patiently] @returns {Promise<import('./api.js').Job | null>} */
+export async function follow(told, patiently = false) {
   for (let missed = 0; ; ) {
     try {
       const now = await job()
@@ -32,9 +32,10 @@ export async function follow(told) {
       missed = 0
     } catch (error) {
       // a server that is busy for a moment is asked again
-      if (++missed > 20) throw error
+      const is_refused = error instanceof Refusal && error.status > 0
+      if (is_refused || (++missed > 20 && !patiently)) throw error
     }
-    await new Promise((later) => setTimeout(later, EVERY))
+    await new Promise((later) => setTimeout(later, missed > 20 ? 8 * EVERY : EVERY))
   }
 }
 
@@ -101,14 +102,16 @@ export class Runs {
       'li',
       {},
       element('img', { src: runFile(id, 'trace.png'), alt: '', loading: 'lazy' }),
-      element('div', { class: 'about' }, element('h3', { text: id }), element('p', { class: 'under', text: when(run.begun) }), ...figures(run).map((text) => element('p', { text }))),
+      element('div', { class: 'about' }, element('h3', { text: id }), element('p', { class: 'under', text: when(run.begun) }), ...figures(run).map((text) => element('p', { text: text.replace(/(\d) (m|cm|mm|s|min)\b/g, '$1\u00a0$2') }))),
     )
     const acts = element('div', { class: 'acts' })
     if (run.files.some((file) => file.name === 'report.html')) acts.append(element('a', { class: 'plain', href: runFile(id, 'report.html'), target: '_blank', rel: 'noopener', text: 'Report', 'aria-label': `Report: ${id}` }))
     if (hooks.operates) {
       if (run.left) acts.append(act('Go on', `Go on: ${id}`, () => hooks.rest(run)))
       if (run.picture) acts.append(act('Place again', `Place again: ${id}`, () => hooks.again(run)))
-      if (run.picture && run.progress && !run.finished && run.progress.stroke > 1) acts.append(act(`From stroke ${run.progress.stroke}`, `From stroke ${run.progress.stroke}: ${id}`, () => hooks.from(run, run.progress?.stroke ?? 1)))
+      // of a rest strokes have other numbers
+      const is_whole = !run.went_on_in && !run.goes_on_with && run.mode === 'trace'
+      if (run.picture && run.progress && !run.finished && run.progress.stroke > 1 && is_whole) acts.append(act(`From stroke ${run.progress.stroke}`, `From stroke ${run.progress.stroke}: ${id}`, () => hooks.from(run, run.progress?.stroke ?? 1)))
     }
     const compare = act('Compare', `Compare: ${id}`, () => this.#choose(id))
     compare.setAttribute('aria-pressed', String(this.chosen.includes(id)))
@@ -185,9 +188,12 @@ function when(begun) {
 /** What a run came to, a line each. @param {RunTold} run */
 function figures(run) {
   const { progress } = run
-  const lines = [`${length(run.width_m)} × ${length(run.height_m)}, ${run.strokes} strokes${run.duration_s ? `, ${time(run.duration_s)}` : ''}`]
+  const strokes = run.points ? '' : `, ${run.strokes} strokes`
+  const lines = [`${length(run.width_m)} × ${length(run.height_m)}${strokes}${run.duration_s ? `, ${time(run.duration_s)}` : ''}`]
   if (run.running) lines.push('It is being drawn now.')
   else if (run.went_on_in) lines.push(`Went on in ${run.went_on_in.split(/[\\/]/).pop()}.`)
+  else if (run.points) lines.push(`${run.points.done} of ${run.points.count} points marked.`)
+  else if (run.mode === 'step') lines.push('Stroke by stroke.')
   else if (!run.finished) lines.push(progress ? `Ended at stroke ${progress.stroke} of ${progress.strokes}.` : 'Ended before it began.')
   if (run.goes_on_with) lines.push(`The rest of ${run.goes_on_with.split(/[\\/]/).pop()}.`)
   if (run.finished && run.max_mm !== null) lines.push(`${plain(run.max_mm, 2)} mm off at most`)

@@ -21,6 +21,8 @@ const SPAN_M = 5e-4
 export const NOWHERE = { x: 0, y: 0, turn: 0, width: 0.6096, height: 0.4572 }
 /** Largest picture of the drawing, pixels either way. */
 const MOST_PIXELS = 4096
+/** Ends of a stroke that is closed are nearer than this, m. */
+const CLOSED_M = 2e-3
 /** The longest way of a pointer that is a click and no drag, pixels. */
 const CLICK = 3
 
@@ -288,13 +290,19 @@ export class Wall {
     this.dirty = true
   }
 
-  /** Shows the drawing up to the end of a stroke. @param {number} number from 1 */
-  upTo(number) {
+  /** Shows the drawing up to a place within a stroke, which is drawn there and back where it is open. @param {number} number from 1 @param {number} share of the way there, or there and back @param {boolean} lit */
+  within(number, share, lit) {
     const { points } = this
     if (!points) return
-    let row = points.rows - 1
-    while (row > 0 && !(points.lit[row] > 0 && points.stroke[row] <= number)) row--
-    this.at(row)
+    let first = 0
+    while (first < points.rows - 1 && !(points.lit[first] > 0 && points.stroke[first] === number)) first++
+    let last = first
+    while (last < points.rows - 1 && !(points.lit[last + 1] > 0 && points.stroke[last + 1] > number)) last++
+    while (last > first && !(points.lit[last] > 0)) last--
+    const is_closed = Math.hypot(points.x[first] - points.x[last], points.y[first] - points.y[last]) < CLOSED_M
+    const along = is_closed ? share : 1 - Math.abs(2 * share - 1)
+    this.dark = !lit
+    this.at(first + Math.round(Math.min(1, Math.max(0, along)) * (last - first)))
   }
 
   /** @param {Colours} colours */

@@ -28,7 +28,7 @@ macro_rules! script {
 }
 
 /// The page first.
-pub(crate) static ASSETS: [Asset; 19] = [
+pub(crate) static ASSETS: [Asset; 21] = [
     asset!("index.html", "text/html; charset=utf-8"),
     asset!("style.css", "text/css; charset=utf-8"),
     asset!("icon.svg", "image/svg+xml"),
@@ -48,6 +48,8 @@ pub(crate) static ASSETS: [Asset; 19] = [
     script!("devices.js"),
     script!("compare.js"),
     script!("head.js"),
+    script!("lab.js"),
+    script!("pictures.js"),
 ];
 
 /// A file in both forms, and what tells one version from another.

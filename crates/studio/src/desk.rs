@@ -7,8 +7,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use axum::body::Bytes;
 use serde_json::{Map, Value, json};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tracelight_task::Failure;
 
+use crate::devices::Caller;
 use crate::flags::{Which, arguments, typed};
 use crate::folder::Folder;
 use crate::live::Live;
@@ -31,6 +33,10 @@ pub(crate) struct Desk {
     asked: Mutex<HashMap<String, (u64, Arc<Work>)>>,
     /// Held while a plan is made: each takes all of the processor.
     planning: Mutex<()>,
+    /// How many may wait for a plan or an experiment: pages of this computer, devices that operate, devices that look on.
+    waiting: [Arc<Semaphore>; 3],
+    /// Held while an experiment of the lab is made.
+    experimenting: Mutex<()>,
     job: Mutex<Option<Job>>,
     /// A move of the head by hand.
     moved: Mutex<Option<Arc<Work>>>,
@@ -80,13 +86,35 @@ impl Desk {
             plans: Mutex::default(),
             asked: Mutex::default(),
             planning: Mutex::default(),
+            waiting: [24, 12, 6].map(|most| Arc::new(Semaphore::new(most))),
+            experimenting: Mutex::default(),
             job: Mutex::default(),
             moved: Mutex::default(),
             live: Live::new(),
         }
     }
 
-    fn work(&self) -> Arc<Work> {
+    /// A place among those who wait for what is computed, so that nobody fills it for the others.
+    ///
+    /// # Errors
+    /// `busy` where there is none.
+    pub(crate) fn waits(&self, caller: &Caller) -> Result<OwnedSemaphorePermit, Failure> {
+        let of = match (caller.is_local, caller.operates()) {
+            (true, _) => 0,
+            (false, true) => 1,
+            (false, false) => 2,
+        };
+        let full =
+            |_| Failure::failed("busy", "too much is asked at once: wait until some of it is answered");
+        Arc::clone(&self.waiting[of]).try_acquire_owned().map_err(full)
+    }
+
+    /// Held while an experiment is made.
+    pub(crate) fn one_experiment(&self) -> MutexGuard<'_, ()> {
+        locked(&self.experimenting)
+    }
+
+    pub(crate) fn work(&self) -> Arc<Work> {
         Work::new(self.next.fetch_add(1, Ordering::Relaxed))
     }
 
@@ -191,12 +219,19 @@ impl Desk {
                 let drawn = flags.iter().filter(|(name, _)| Which::Drawing.has(name));
                 let drawn: Map<String, Value> =
                     drawn.map(|(name, value)| (name.clone(), value.clone())).collect();
-                let keeps_time = self.head_of(flags).is_some_and(|head| head.is_at_port);
+                // unattended it is simulated
+                let keeps_time =
+                    operator.is_some() && self.head_of(flags).is_some_and(|head| head.is_at_port);
                 let command = self.command("trace", picture, flags, which)?;
                 (command, (*picture).to_owned(), json!(drawn), keeps_time)
             }
             Subject::RestOf(run) => self.rest_command(run, flags)?,
         };
+        if keeps_time && operator.is_none() {
+            let message =
+                "the head at the port is operated by a page: ask for it with \"attended\" and the page's id";
+            return Err(Failure::usage("usage", message));
+        }
         let is_paced = command.iter().any(|argument| argument.starts_with("--real-time"));
         if operator.is_some() && !is_paced && !keeps_time {
             command.push("--real-time=1".to_owned());
@@ -270,7 +305,17 @@ impl Desk {
         command.extend(["--out".to_owned(), dir.to_string_lossy().into_owned(), "--json".to_owned()]);
         let desk = Arc::clone(self);
         let (begun, is_live) = (self.job(), operator.is_some());
-        operator.iter().for_each(|page| self.live.begin(page));
+        let is_set = |flag: &str| {
+            wanted.flags.get(flag).is_some_and(|value| !matches!(value, Value::Null | Value::Bool(false)))
+        };
+        let mode = if is_set("step") {
+            "step"
+        } else if is_set("points") {
+            "points"
+        } else {
+            "trace"
+        };
+        operator.iter().for_each(|page| self.live.begin(page, mode));
         Ok((begun, move || {
             let _last = last;
             // whatever becomes of it, pages are told that it is over

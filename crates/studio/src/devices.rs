@@ -84,13 +84,16 @@ pub(crate) struct Caller {
     pub(crate) role: Option<Role>,
     /// A page of this computer.
     pub(crate) is_local: bool,
+    /// The device's number; 0 of this computer.
+    pub(crate) device: u64,
     /// Tells when the device is sent away.
     pub(crate) sent_away: Option<watch::Receiver<bool>>,
 }
 
 impl Caller {
     /// A page of this computer.
-    pub(crate) const LOCAL: Self = Self { role: Some(Role::Operator), is_local: true, sent_away: None };
+    pub(crate) const LOCAL: Self =
+        Self { role: Some(Role::Operator), is_local: true, device: 0, sent_away: None };
 
     /// Whether he may do more than look on.
     pub(crate) fn operates(&self) -> bool {
@@ -152,13 +155,14 @@ impl Devices {
 
     /// Who asks with that secret.
     pub(crate) fn caller(&self, secret: Option<&str>) -> Caller {
-        let nobody = Caller { role: None, is_local: false, sent_away: None };
+        let nobody = Caller { role: None, is_local: false, device: 0, sent_away: None };
         let Some(secret) = secret.and_then(Secret::read) else { return nobody };
         let mut state = self.state();
         let known = state.joined.iter_mut().find(|device| device.secret.is(secret));
         let Some(device) = known.filter(|device| device.seen.elapsed() < AWAY) else { return nobody };
         device.seen = Instant::now();
-        Caller { role: Some(device.role), is_local: false, sent_away: Some(device.sent_away.subscribe()) }
+        let sent_away = Some(device.sent_away.subscribe());
+        Caller { role: Some(device.role), is_local: false, device: device.id, sent_away }
     }
 
     /// Sends a device away; whether there was one of that number.

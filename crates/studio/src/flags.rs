@@ -80,14 +80,27 @@ pub(crate) fn arguments(
     which: Which,
     rigs: &[String],
 ) -> Result<Vec<String>, Failure> {
+    let is_as_before = |name: &str| which == Which::Rest && Which::Attended.has(name) && !which.has(name);
+    if let Some((name, _)) = flags.iter().find(|(name, _)| is_as_before(name)) {
+        return Err(refused(format!("{name} is as it was when the run was begun: leave it out")));
+    }
+    named_values(flags, |name| which.has(name), rigs)
+}
+
+/// The arguments that flags are, of those that there are; a flag that is null, false or empty is left out.
+///
+/// # Errors
+/// `usage`: one that there is not, or a value that none has.
+pub(crate) fn named_values(
+    flags: &Map<String, Value>,
+    has: impl Fn(&str) -> bool,
+    rigs: &[String],
+) -> Result<Vec<String>, Failure> {
     let mut arguments = Vec::new();
     for (name, value) in flags {
-        if !which.has(name) {
-            if which == Which::Rest && Which::Attended.has(name) {
-                return Err(refused(format!("{name} is as it was when the run was begun: leave it out")));
-            }
-            let near =
-                nearest(name, FLAGS).map_or_else(String::new, |near| format!("; did you mean {near}?"));
+        if !has(name) {
+            let near = nearest(name, FLAGS.into_iter().filter(|flag| has(flag)));
+            let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
             return Err(refused(format!("{name} is no flag that the studio takes{near}")));
         }
         let flag = name.replace('_', "-");

@@ -142,6 +142,11 @@ impl Folder {
         self.dir.join(format!(".plan-{}-{number}.csv", std::process::id()))
     }
 
+    /// A place for the plot of an experiment, of this process alone.
+    pub(crate) fn plot(&self, number: u64) -> PathBuf {
+        self.dir.join(format!(".lab-{}-{number}.svg", std::process::id()))
+    }
+
     /// Where a picture lies; `None` where there is none of that id.
     pub(crate) fn picture(&self, id: &str) -> Option<PathBuf> {
         let (stem, kind) = parted(id)?;
@@ -155,11 +160,11 @@ impl Folder {
         (self.picture(id)? == Path::new(path)).then(|| id.to_owned())
     }
 
-    /// A picture's bytes and their type.
-    pub(crate) fn picture_bytes(&self, id: &str) -> Option<(Vec<u8>, &'static str)> {
+    /// A picture's file, opened, and its type.
+    pub(crate) fn picture_file(&self, id: &str) -> Option<(fs::File, &'static str)> {
         let (_, kind) = parted(id)?;
         let of_kind = KINDS.iter().find(|(known, _)| *known == kind)?.1;
-        Some((fs::read(self.picture(id)?).ok()?, of_kind))
+        Some((fs::File::open(self.picture(id)?).ok()?, of_kind))
     }
 
     /// All pictures: those that were given to it, the newest first, and the examples.
@@ -188,9 +193,29 @@ impl Folder {
     /// `cannot-write`.
     pub(crate) fn begin_run(&self, picture: &str) -> Result<(String, PathBuf), Failure> {
         let stem = parted(picture).map_or_else(|| "run".to_owned(), |(stem, _)| stem);
-        let dir = files::ResultFolder::unused(&self.runs().join(stem))?;
-        let id = dir.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        Ok((id, dir))
+        // a name is given once: runs that go on with another know it by that
+        let numbers = [self.runs(), self.trash(Kind::Runs)];
+        let names = numbers.iter().filter_map(|dir| fs::read_dir(dir).ok()).flatten().flatten();
+        let names = names.filter_map(|entry| entry.file_name().into_string().ok());
+        let last = names.filter_map(|name| number_of(&name, &stem)).max().unwrap_or(0);
+        for number in (last + 1..).take(1000) {
+            let id = if number == 1 { stem.clone() } else { format!("{stem}-{number}") };
+            let dir = self.runs().join(&id);
+            match fs::create_dir(&dir) {
+                Ok(()) => return Ok((id, dir)),
+                Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => {}
+                Err(e) => return Err(cannot_write(&dir, &e)),
+            }
+        }
+        Err(Failure::failed(
+            "cannot-write",
+            format!("there are too many runs of the name {stem}: delete some"),
+        ))
+    }
+
+    /// Where what was deleted of a kind lies.
+    fn trash(&self, kind: Kind) -> PathBuf {
+        self.dir.join(TRASH).join(kind.word())
     }
 
     /// Removes the folder of a run in which nothing was written.
@@ -255,7 +280,7 @@ impl Folder {
                 format!("{id} is being written: stop it, or wait until it is done"),
             ));
         }
-        let trash = self.dir.join(TRASH).join(kind.word());
+        let trash = self.trash(kind);
         fs::create_dir_all(&trash).map_err(|e| cannot_write(&trash, &e))?;
         for number in 1..=9999 {
             let name = if number == 1 { id.to_owned() } else { format!("{id}~{number}") };
@@ -274,19 +299,25 @@ impl Folder {
     /// `unreadable` where it is not there; `busy` where another one has its place now; `cannot-write`.
     pub(crate) fn restore(&self, kind: Kind, name: &str) -> Result<String, Failure> {
         let id = name.split('~').next().unwrap_or_default();
-        let from = self.dir.join(TRASH).join(kind.word()).join(name);
+        let from = self.trash(kind).join(name);
         let is_own = is_plain(id) && name.chars().all(|c| c == '~' || is_letter(c));
         if !is_own || !from.exists() {
             return Err(Failure::usage("unreadable", format!("there is no {name:?} in the studio's trash")));
         }
         let to = self.dir.join(kind.word()).join(id);
-        if to.exists() {
-            return Err(Failure::failed(
+        // its place is taken first, so that nobody's newer one gives way
+        let taken = match kind {
+            Kind::Runs => fs::create_dir(&to),
+            Kind::Pictures => fs::File::create_new(&to).map(drop),
+        };
+        match taken.and_then(|()| fs::rename(&from, &to)) {
+            Ok(()) => Ok(id.to_owned()),
+            Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => Err(Failure::failed(
                 "busy",
                 format!("there is another {id} now: what is in the trash stays there"),
-            ));
+            )),
+            Err(e) => Err(cannot_write(&to, &e)),
         }
-        fs::rename(&from, &to).map(|()| id.to_owned()).map_err(|e| cannot_write(&to, &e))
     }
 }
 
@@ -310,6 +341,12 @@ impl Kind {
 /// Whether a name is one of this folder alone: nothing that leads elsewhere, and no hidden one.
 fn is_plain(name: &str) -> bool {
     !name.is_empty() && !name.starts_with('.') && name.chars().all(is_letter)
+}
+
+/// The number of a run of that name, such as 2 of `house-2`, 1 of `house`, also as it lies in the trash; `None` of another name.
+fn number_of(run: &str, stem: &str) -> Option<u32> {
+    let rest = run.split('~').next()?.strip_prefix(stem)?;
+    if rest.is_empty() { Some(1) } else { rest.strip_prefix('-')?.parse().ok() }
 }
 
 fn is_letter(c: char) -> bool {

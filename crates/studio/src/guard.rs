@@ -37,37 +37,34 @@ const JOIN: &str = "/api/v1/session/join";
 pub(crate) enum Door {
     /// Of this computer alone, at that port.
     Local(u16),
-    /// Of the network: this computer's names there, and the devices that have joined.
-    Lan(Arc<[String]>, Arc<Devices>),
+    /// Of the network, for the devices that have joined.
+    Lan(Arc<Devices>),
 }
 
 impl Door {
-    /// Whether a request calls this computer by a name of its own: other names are pages' that have them point here. Numbers cannot be pointed elsewhere.
+    /// Whether a request calls this computer by a name of its own: pages have other names point here, and ask what anybody of this computer may.
     fn is_named(&self, host: &str) -> bool {
         match self {
             Self::Local(port) => {
                 let own = ["127.0.0.1", "localhost", "[::1]"].iter().find_map(|own| host.strip_prefix(own));
                 own.is_some_and(|rest| rest == format!(":{port}") || (rest.is_empty() && *port == 80))
             }
-            Self::Lan(names, _) => {
-                let name = host.rsplit_once(':').map_or(host, |(name, _)| name).to_ascii_lowercase();
-                let bare = name.trim_start_matches('[').trim_end_matches(']');
-                name == "localhost" || bare.parse::<std::net::IpAddr>().is_ok() || names.contains(&name)
-            }
+            // a network may call it anything; a page by a name that is somebody else's has no device's cookie
+            Self::Lan(_) => true,
         }
     }
 
     const fn scheme(&self) -> &'static str {
         match self {
             Self::Local(_) => "http://",
-            Self::Lan(..) => "https://",
+            Self::Lan(_) => "https://",
         }
     }
 
     fn caller(&self, headers: &HeaderMap) -> Caller {
         match self {
             Self::Local(_) => Caller::LOCAL,
-            Self::Lan(_, devices) => devices.caller(cookie(headers)),
+            Self::Lan(devices) => devices.caller(cookie(headers)),
         }
     }
 }
@@ -106,7 +103,7 @@ fn admitted(door: &Door, request: &mut Request) -> Result<(), Refused> {
     let is_foreign = site.is_some_and(|site| site != "same-origin" && site != "none");
     let is_own = text(ORIGIN.as_str()).is_none_or(|origin| match door {
         Door::Local(_) => origin.strip_prefix("http://").is_some_and(|host| door.is_named(host)),
-        Door::Lan(..) => origin.strip_prefix(door.scheme()) == Some(host),
+        Door::Lan(_) => origin.strip_prefix(door.scheme()) == Some(host),
     });
     // a socket that is opened is read by GET, and browsers let any page open one
     if (!is_read || is_socket) && (is_foreign || !is_own) {
@@ -122,8 +119,8 @@ fn admitted(door: &Door, request: &mut Request) -> Result<(), Refused> {
 fn may(caller: &Caller, path: &str, is_read: bool) -> Result<(), Refused> {
     let is_page = !path.starts_with("/api/");
     let is_anybodys = path == STOP || path == JOIN || path == "/api/v1/session";
-    // to plan changes nothing, and shows what is drawn
-    let looks = is_read || path == "/api/v1/plans";
+    // to plan changes nothing, and shows what is drawn; neither does an experiment
+    let looks = is_read || ["/api/v1/plans", "/api/v1/lab"].contains(&path);
     match caller.role {
         _ if is_page || is_anybodys || caller.operates() => Ok(()),
         Some(_) if looks => Ok(()),

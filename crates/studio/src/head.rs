@@ -16,7 +16,7 @@ const MOST_BYTES: usize = 40;
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq)]
 #[serde(tag = "move", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Move {
-    /// It points straight ahead now, and is told so.
+    /// The head points straight ahead now, and is told so.
     Home,
     /// To straight ahead.
     Park,

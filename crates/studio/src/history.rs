@@ -45,6 +45,14 @@ impl Desk {
         let is_other = flags.as_ref().and_then(|flags| flags.get("rig")).is_some_and(|rig| !is_chosen(rig));
         flags.iter_mut().filter(|_| is_other).for_each(|flags| drop(flags.remove("rig")));
         run["rig"] = json!(rig_of(&command));
+        let has = |flag: &str| command.iter().any(|argument| argument.split('=').next() == Some(flag));
+        run["mode"] = json!(if has("--step") {
+            "step"
+        } else if has("--points") {
+            "points"
+        } else {
+            "trace"
+        });
         run["files"] = json!(self.folder.run_files(&id));
         (run["id"], run["picture"], run["flags"]) = (json!(id), json!(picture), json!(flags));
     }

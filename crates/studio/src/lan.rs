@@ -53,7 +53,7 @@ fn addresses() -> Vec<IpAddr> {
 }
 
 /// This computer's names on its network, in small letters.
-pub(crate) fn names() -> Vec<String> {
+fn names() -> Vec<String> {
     let name =
         hostname::get().ok().and_then(|name| name.into_string().ok()).unwrap_or_default().to_lowercase();
     let short = name.split('.').next().unwrap_or_default();

@@ -14,6 +14,7 @@ mod guard;
 mod head;
 mod history;
 mod house;
+mod lab;
 mod lan;
 mod live;
 mod points;

@@ -26,7 +26,7 @@ const MOST_BEHIND: usize = 512;
 /// Wishes that wait for a tick.
 const MOST_WISHES: usize = 64;
 /// Kinds of events of which a page is told the last one that comes later.
-const KEPT: [&str; 5] = ["preflight", "frame", "point", "fault", "looks"];
+const KEPT: [&str; 6] = ["head", "preflight", "frame", "point", "fault", "looks"];
 /// What stops a job, whoever says it.
 const STOP: &str = "stop";
 
@@ -40,6 +40,8 @@ pub(crate) struct Live {
 #[derive(Debug, Default)]
 struct State {
     wishes: VecDeque<String>,
+    /// How strokes are drawn: all, one at a time, or points.
+    mode: &'static str,
     /// Who operates the job: as long as one goes on there is one.
     operator: Option<Operator>,
     /// Another page that wants to operate it, and since when.
@@ -104,9 +106,9 @@ impl Live {
     }
 
     /// A job begins, which that page operates.
-    pub(crate) fn begin(&self, page: &str) {
-        *self.state() = State { operator: Some(Operator::new(page)), ..State::default() };
-        self.say(&json!({ "event": "begun", "operator": page }));
+    pub(crate) fn begin(&self, page: &str, mode: &'static str) {
+        *self.state() = State { operator: Some(Operator::new(page)), mode, ..State::default() };
+        self.say(&json!({ "event": "begun", "operator": page, "mode": mode }));
     }
 
     /// The job is over: nothing is asked of it any more.
@@ -137,7 +139,8 @@ impl Live {
     pub(crate) fn join(&self) -> (Vec<String>, broadcast::Receiver<String>) {
         let state = self.state();
         let operator = state.operator.as_ref().map(|operator| &operator.page);
-        let first = json!({ "event": "live", "on": state.is_on(), "operator": operator }).to_string();
+        let first = json!({ "event": "live", "on": state.is_on(), "operator": operator, "mode": state.mode });
+        let first = first.to_string();
         let all = std::iter::once(first)
             .chain(state.earlier.iter().map(|(_, text)| text.clone()))
             .chain(state.progress.clone());
@@ -254,7 +257,7 @@ mod tests {
     fn one_page_operates_and_anybody_stops() {
         let live = Live::new();
         assert!(live.ask("a", "arm").is_err() && live.ask("a", "stop").is_err() && !live.stop());
-        live.begin("a");
+        live.begin("a", "trace");
         assert!(live.ask("a", "arm").is_ok());
         assert!(live.ask("b", "go-on").unwrap_err().contains("another page operates it"));
         assert!(live.ask("b", "stop").is_ok());
@@ -267,7 +270,7 @@ mod tests {
     #[test]
     fn an_operator_that_is_silent_pauses_and_then_darkens_once() {
         let live = Live::new();
-        live.begin("a");
+        live.begin("a", "trace");
         live.look();
         assert!(wishes(&live).is_empty());
         let silent = |for_how_long: Duration| {
@@ -291,7 +294,7 @@ mod tests {
     #[test]
     fn who_takes_it_over_waits_unless_the_operator_is_lost_and_gets_it_dark() {
         let live = Live::new();
-        live.begin("a");
+        live.begin("a", "trace");
         live.ask("b", "take").unwrap();
         live.look();
         assert!(live.ask("b", "arm").is_err());
@@ -312,7 +315,7 @@ mod tests {
     #[test]
     fn a_page_that_comes_later_is_told_what_was_said_before() {
         let live = Live::new();
-        live.begin("a");
+        live.begin("a", "trace");
         live.tell(&json!({ "event": "preflight" }));
         for n in 0..100 {
             live.tell(&json!({ "event": "point", "point": n }));

@@ -55,6 +55,8 @@ pub trait Seat: Sync {
 pub struct Performed {
     /// What it prints with `--json`: one JSON object.
     pub json: String,
+    /// What it prints for people, where it was asked for that.
+    pub text: String,
     /// The command did its work, and what it worked on failed.
     pub failure: Option<Failure>,
 }

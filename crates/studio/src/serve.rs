@@ -22,8 +22,8 @@ use crate::session::links;
 /// How often is looked whether it is to end.
 const LOOK: Duration = Duration::from_millis(50);
 /// Connections at once: of this computer, and of the network, whose devices take no room from it.
-const MOST_LOCAL: usize = 512;
-const MOST_LAN: usize = 256;
+const MOST_LOCAL: usize = 256;
+const MOST_LAN: usize = 128;
 
 /// A studio whose doors are open.
 pub struct Studio {
@@ -133,7 +133,7 @@ impl Studio {
             drop(tokio::spawn(door::serve(own, None, router(house.clone(), Door::Local(port)), MOST_LOCAL)));
             if let Some((listener, private)) = network {
                 let listener = tokio::net::TcpListener::from_std(listener)?;
-                let by = Door::Lan(lan::names().into(), Arc::clone(&house.devices));
+                let by = Door::Lan(Arc::clone(&house.devices));
                 drop(tokio::spawn(door::serve(listener, Some(private), router(house, by), MOST_LAN)));
             }
             wanted(&stop, lasts_s).await;

@@ -1,5 +1,6 @@
 //! What is asked by HTTP, and answered.
 
+use std::fs::File;
 use std::sync::Arc;
 
 use axum::body::Bytes;
@@ -22,10 +23,12 @@ use tracelight_task::Failure;
 use crate::assets::packed;
 use crate::desk::{Desk, Subject, Wanted};
 use crate::devices::Caller;
+use crate::door::Place;
 use crate::folder::{EXAMPLES, Kind, MOST_BYTES};
 use crate::guard::{Door, SHOWN, guard};
 use crate::head::Move;
 use crate::house::House;
+use crate::lab::Experiment;
 use crate::refused::Refused;
 use crate::sent::sent;
 use crate::session;
@@ -47,6 +50,7 @@ pub(crate) fn router(house: House, door: Door) -> Router {
         .route("/jobs/current/wishes", post(wish))
         .route("/live", get(live))
         .route("/head", post(move_head))
+        .route("/lab", post(lab))
         .route("/stop", post(stop))
         .route("/session", get(session::told))
         .route("/session/join", post(session::join))
@@ -119,14 +123,14 @@ async fn add(
 }
 
 async fn picture(State(desk): Shared, Path(id): Path<String>) -> Result<Response, Refused> {
-    let found = beside(move || Ok(desk.folder.picture_bytes(&id))).await?;
-    Ok(found.map_or_else(|| Refused::missing("picture").into_response(), shown))
+    let found = beside(move || Ok(desk.folder.picture_file(&id))).await?;
+    found.map(shown).ok_or_else(|| Refused::missing("picture"))
 }
 
 /// Something of the folder.
-fn shown((bytes, kind): (Vec<u8>, &'static str)) -> Response {
-    ([(CONTENT_TYPE, kind), (CONTENT_SECURITY_POLICY, SHOWN), (CACHE_CONTROL, "no-cache")], bytes)
-        .into_response()
+fn shown((file, kind): (File, &'static str)) -> Response {
+    let head = [(CONTENT_TYPE, kind), (CONTENT_SECURITY_POLICY, SHOWN), (CACHE_CONTROL, "no-cache")];
+    (head, sent(file)).into_response()
 }
 
 /// What a page asks to be planned or traced.
@@ -159,8 +163,15 @@ fn asked(bytes: &[u8]) -> Result<Asked, Refused> {
     })
 }
 
-async fn plan(State(desk): Shared, bytes: Bytes) -> Result<Json<Value>, Refused> {
+async fn plan(
+    State(desk): Shared,
+    Extension(caller): Extension<Caller>,
+    bytes: Bytes,
+) -> Result<Json<Value>, Refused> {
     let Asked { picture, flags, page, number, .. } = asked(&bytes)?;
+    let _waits = desk.waits(&caller)?;
+    // a page of another device is another page, whatever it calls itself
+    let page = if page.is_empty() { page } else { format!("{}:{page}", caller.device) };
     beside(move || desk.plan((&page, number), &picture, &flags)).await.map(Json)
 }
 
@@ -216,12 +227,15 @@ async fn wish(State(desk): Shared, bytes: Bytes) -> Result<Json<Value>, Refused>
 async fn live(
     State(desk): Shared,
     Extension(caller): Extension<Caller>,
+    place: Option<Extension<Place>>,
     Query(Page { page }): Query<Page>,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    upgrade
-        .max_message_size(MOST_MESSAGE)
-        .on_upgrade(move |socket| serve_socket(desk, (page, caller), socket))
+    upgrade.max_message_size(MOST_MESSAGE).on_upgrade(async move |socket| {
+        // as long as it is open it counts as a connection
+        let _place = place;
+        serve_socket(desk, (page, caller), socket).await;
+    })
 }
 
 #[derive(Deserialize)]
@@ -237,6 +251,20 @@ async fn move_head(State(desk): Shared, bytes: Bytes) -> Result<Json<Value>, Ref
         ))
     })?;
     beside(move || desk.move_head(&by)).await.map(Json)
+}
+
+async fn lab(
+    State(desk): Shared,
+    Extension(caller): Extension<Caller>,
+    bytes: Bytes,
+) -> Result<Json<Value>, Refused> {
+    let asked: Experiment = serde_json::from_slice(&bytes).map_err(|e| {
+        Refused::usage(format!(
+            "an experiment is asked for by {{\"command\": \"bode\", \"of\": [FORMULA], \"flags\": {{…}}}}: {e}"
+        ))
+    })?;
+    let _waits = desk.waits(&caller)?;
+    beside(move || desk.experiment(&asked)).await.map(Json)
 }
 
 /// Never refused, whatever is sent with it.
@@ -292,9 +320,7 @@ async fn run_file(
     Path((run, name)): Path<(String, String)>,
 ) -> Result<Response, Refused> {
     let found = beside(move || Ok(desk.folder.run_file(&run, &name))).await?;
-    let (file, kind) = found.ok_or_else(|| Refused::missing("file"))?;
-    Ok(([(CONTENT_TYPE, kind), (CONTENT_SECURITY_POLICY, SHOWN), (CACHE_CONTROL, "no-cache")], sent(file))
-        .into_response())
+    found.map(shown).ok_or_else(|| Refused::missing("file"))
 }
 
 /// A file of the page, zipped for who takes it so, or nothing anew for who has it.

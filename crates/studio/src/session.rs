@@ -29,7 +29,9 @@ pub(crate) async fn told(
     let lan = lan.filter(|_| operates);
     let lan = lan.map(|lan| json!({ "addresses": lan.addresses(), "fingerprint": lan.fingerprint }));
     let devices = operates.then(|| devices.json());
-    Json(json!({ "role": caller.role, "local": caller.is_local, "lan": lan, "devices": devices }))
+    Json(
+        json!({ "role": caller.role, "local": caller.is_local, "device": caller.device, "lan": lan, "devices": devices }),
+    )
 }
 
 #[derive(Deserialize)]
@@ -50,7 +52,7 @@ pub(crate) async fn join(State(devices): Known, bytes: Bytes) -> Result<Response
         Refused::with(StatusCode::UNAUTHORIZED, Failure::usage("not-invited", message))
     })?;
     let cookie =
-        format!("{COOKIE_NAME}={}; Path=/; Secure; HttpOnly; SameSite=Strict; Max-Age=86400", secret.hex());
+        format!("{COOKIE_NAME}={}; Path=/; Secure; HttpOnly; SameSite=Strict; Max-Age=2592000", secret.hex());
     Ok(([(SET_COOKIE, cookie)], Json(json!({ "role": role }))).into_response())
 }
 

@@ -164,7 +164,7 @@ mod tests {
     fn whatever_a_page_says_is_taken_or_refused_and_who_looks_on_asks_nothing_but_to_stop() {
         let dir = std::env::temp_dir().join(format!("tracelight-socket-{}", std::process::id()));
         let desk = Desk::new(Box::new(Idle), Folder::open(&dir).unwrap());
-        desk.live.begin("a");
+        desk.live.begin("a", "trace");
         let seeds: [&[u8]; 6] = [
             br#"{"wish":"arm"}"#,
             br#"{"wish":"go-on","here":true}"#,

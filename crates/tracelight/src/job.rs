@@ -153,6 +153,9 @@ fn ran(
     task: Task<'_>,
 ) -> Result<(Prepared, Ran), Failure> {
     let wants_a_person = device.as_ref().is_some_and(|device| device.rig().wants_a_person());
+    if let Some((seat, _)) = seat.zip(device.as_ref()) {
+        seat.tell(&serde_json::json!({ "event": "head", "real": wants_a_person }));
+    }
     // whoever sits elsewhere is asked whatever the head is: it is he who sees that nobody stands in the light
     let arms = (wants_a_person || seat.is_some()) && !args.dry_run;
     let how = args.by_hand.attending(args.is_by_steps(), device.is_some());

@@ -112,6 +112,15 @@ pub(crate) fn from_root(name: &str) -> String {
         let path = std::path::absolute(file).ok().filter(|_| std::path::Path::new(file).is_file());
         path.map(|path| path.to_string_lossy().into_owned())
     };
+    let root = |path: &str| {
+        std::path::absolute(path).map_or_else(|_| path.to_owned(), |path| path.to_string_lossy().into_owned())
+    };
+    if let Some((port, head)) = rigfile::at_port(name, is_device) {
+        // Windows has ports that are no paths
+        let port = if is_device(port) { root(port) } else { port.to_owned() };
+        let head = head.map(|head| whole(head).unwrap_or_else(|| head.to_owned()));
+        return head.map_or_else(|| port.clone(), |head| format!("{port}:{head}"));
+    }
     let behind = || {
         let (before, file) = name.rsplit_once(':')?;
         Some(format!("{before}:{}", whole(file)?))

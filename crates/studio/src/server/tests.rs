@@ -74,7 +74,7 @@ impl Program for Noting {
 }
 
 fn done(json: &str) -> Performed {
-    Performed { json: json.to_owned(), failure: None }
+    Performed { json: json.to_owned(), text: String::new(), failure: None }
 }
 
 struct Studio {
@@ -105,8 +105,7 @@ fn studio(name: &str) -> Studio {
     let devices = Arc::new(Devices::default());
     let lan = Some(Arc::new(Lan { port: 4461, fingerprint: "AB:CD".to_owned() }));
     let house = House { desk, devices: Arc::clone(&devices), lan };
-    let names = ["workshop".to_owned(), "workshop.local".to_owned()];
-    let network = router(house.clone(), Door::Lan(names.into(), Arc::clone(&devices)));
+    let network = router(house.clone(), Door::Lan(Arc::clone(&devices)));
     Studio { router: router(house, Door::Local(4460)), network, devices, runs, asked, go_on, dir }
 }
 

@@ -169,6 +169,7 @@ fn done_for(arguments: &[String], seat: Option<&dyn Seat>, task: Task<'_>) -> Re
         Command::Home(args) => moving::home(&args, task.stop),
         Command::Jog(args) => moving::jog(&args, task.stop),
         Command::Park(args) => moving::park(&args, task.stop),
+        Command::Lab(args) => lab::run(&args, answer_to, task.stop),
         Command::Runs(args) => runs::run(&args),
         Command::Compare(args) => runs::run_compare(&args),
         Command::Explain(args) => explain::run(&args),

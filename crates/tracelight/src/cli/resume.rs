@@ -69,12 +69,14 @@ pub(crate) fn run(
         return Err(Failure::usage("usage", message));
     }
     asked.check_inputs()?;
-    // its names are those of there
-    std::env::set_current_dir(&asked.folder).map_err(|e| {
-        let message =
-            format!("cannot go on: the run was begun in {}, and there: {e}", asked.folder.display());
-        Failure::usage("changed", message)
-    })?;
+    // its names are those of there, unless all of them say where from the root
+    if !asked.is_from_root() {
+        std::env::set_current_dir(&asked.folder).map_err(|e| {
+            let message =
+                format!("cannot go on: the run was begun in {}, and there: {e}", asked.folder.display());
+            Failure::usage("changed", message)
+        })?;
+    }
     let plan_tick = progress.map_or(0, |progress| progress.plan_tick);
     let earlier = asked.before.iter().cloned().chain([Before { folder: dir.clone(), plan_tick }]).collect();
     match job::resume(

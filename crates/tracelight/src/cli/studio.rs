@@ -91,8 +91,8 @@ impl Program for Commands {
     ) -> Result<Performed, Failure> {
         let attended = seat.map(Attended);
         let seat = attended.as_ref().map(|attended| attended as &dyn operator::Seat);
-        let Answer { json, failure, .. } = (self.performs)(arguments, seat, Task { progress, stop })?;
-        Ok(Performed { json, failure })
+        let Answer { json, text, failure } = (self.performs)(arguments, seat, Task { progress, stop })?;
+        Ok(Performed { json, text, failure })
     }
 }
 

@@ -91,6 +91,14 @@ fn what_is_deleted_is_had_back_and_what_is_written_is_not_deleted() {
         assert_eq!(studio.delete("/api/v1/pictures/mine.png").await.1, json!({ "in_trash": "mine.png" }));
         assert_eq!(studio.get("/api/v1/pictures/mine.png").await.0, StatusCode::NOT_FOUND);
         assert_eq!(studio.post("/api/v1/trash/pictures/mine.png", "").await.0, StatusCode::OK);
+        // a name is given once
+        for name in ["house-2", "house-3"] {
+            let (_, begun) = studio.post("/api/v1/jobs", r#"{"picture":"house.png"}"#).await;
+            assert_eq!(begun["run"], name);
+            studio.go_on.send(()).unwrap();
+            studio.until_over().await;
+            assert_eq!(studio.delete(&format!("/api/v1/runs/{name}")).await.0, StatusCode::OK);
+        }
         for (path, status) in [
             ("/api/v1/runs/none", 404),
             ("/api/v1/runs/..", 404),
