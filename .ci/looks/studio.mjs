@@ -17,7 +17,8 @@ const opened = async (width, height, options = {}) => {
   const page = await context.newPage()
   page.on('pageerror', error => complaints.push(`${width} px: ${error.message}`))
   page.on('request', request => /^(data|blob):/.test(request.url()) || request.url().startsWith(address) || complaints.push(`asks for ${request.url()}`))
-  await page.goto(address)
+  // a page that comes new begins with what was placed last
+  await page.goto(address + '#picture=house.png')
   await page.waitForFunction(() => document.getElementById('count').textContent !== '–')
   return page
 }
@@ -282,10 +283,17 @@ const devices = async () => {
     await device.goto(link)
     return device
   }
+  // what was placed here is what the phone has at the wall
+  await page.goto(address)
+  await page.fill('[name=width]', '77cm')
+  await page.press('[name=width]', 'Enter')
+  await until(page, 'a width is not planned', () => /--width=77cm/.test(document.getElementById('command').textContent))
+  await page.goto(address + '#devices')
   const link = await invite('operator'), lan = link.split('#')[0]
   const phone = await join(link, 390, 844)
   await until(phone, 'a phone that joined shows no drawing', () => document.getElementById('count').textContent !== '–')
   check(!/join/.test(phone.url()), 'the invitation stays in the address')
+  check((await value(phone, 'width')) === '77cm', 'a phone does not show what was placed')
   const thief = await join(link, 390, 844)
   await until(thief, 'an invitation is taken twice', () => !document.getElementById('outside').hidden && /used already/.test(document.getElementById('outside-why').textContent))
   await page.click('#to-place')

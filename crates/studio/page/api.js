@@ -16,7 +16,7 @@
  * @typedef {{ command: string, answer: any, words: string, svg: string, failure: Failure | null }} Experiment
  * @typedef {{ name: string, planned_as: string, at_port: boolean, real: boolean }} Head
  * @typedef {{ id: number, name: string, role: 'operator' | 'viewer', lines: number, seen_s: number }} Device
- * @typedef {{ role: 'operator' | 'viewer' | null, local: boolean, device: number, lan: { addresses: string[], fingerprint: string } | null, devices: Device[] | null }} Session
+ * @typedef {{ role: 'operator' | 'viewer' | null, local: boolean, device: number, lan: { addresses: string[], fingerprint: string } | null, devices: Device[] | null, last: { picture: string, flags: Flags } | null }} Session
  * @typedef {{ role: string, links: string[], code_svg: string | null, fingerprint: string, holds_s: number }} Invitation
  */
 

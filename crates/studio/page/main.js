@@ -62,10 +62,10 @@ function placed(box) {
   return flags
 }
 
-/** What was asked for when this page was last left. @returns {import('./store.js').Asked} */
+/** What was asked for when this page was last left; of one that comes new, what was placed last, here or on another device. @returns {import('./store.js').Asked} */
 function earlier() {
   const asked = kept('sessionStorage', 'asked')
-  return asked ? JSON.parse(asked) : { picture: 'house.png', flags: {} }
+  return asked ? JSON.parse(asked) : (session?.last ?? { picture: 'house.png', flags: {} })
 }
 
 /** Where the planned drawing lies. @param {api.Plan} of @returns {import('./wall.js').Box} */

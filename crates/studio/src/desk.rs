@@ -29,14 +29,16 @@ pub(crate) struct Desk {
     pub(crate) folder: Folder,
     next: AtomicU64,
     plans: Mutex<VecDeque<(u64, Bytes)>>,
+    /// The picture and flags that were planned last by who operates: where a page begins that comes new, such as a phone at the wall.
+    last: Mutex<Value>,
     /// What each page asked for last, and the number it gave that.
     asked: Mutex<HashMap<String, (u64, Arc<Work>)>>,
-    /// Held while a plan is made: each takes all of the processor.
-    planning: Mutex<()>,
+    /// Held while a plan is made: each takes all of the processor. Who waits for it holds no thread.
+    pub(crate) planning: Arc<tokio::sync::Mutex<()>>,
     /// How many may wait for a plan or an experiment: pages of this computer, devices that operate, devices that look on.
     waiting: [Arc<Semaphore>; 3],
     /// Held while an experiment of the lab is made.
-    experimenting: Mutex<()>,
+    pub(crate) experimenting: Arc<tokio::sync::Mutex<()>>,
     job: Mutex<Option<Job>>,
     /// A move of the head by hand.
     moved: Mutex<Option<Arc<Work>>>,
@@ -54,6 +56,12 @@ struct Job {
     flags: Value,
     /// Whether pages attend it.
     live: bool,
+}
+
+/// A plan that was taken on.
+pub(crate) struct Planned {
+    command: Vec<String>,
+    work: AtLast,
 }
 
 /// A job that somebody asks for.
@@ -84,10 +92,11 @@ impl Desk {
             folder,
             next: AtomicU64::new(1),
             plans: Mutex::default(),
+            last: Mutex::default(),
             asked: Mutex::default(),
-            planning: Mutex::default(),
+            planning: Arc::default(),
             waiting: [24, 12, 6].map(|most| Arc::new(Semaphore::new(most))),
-            experimenting: Mutex::default(),
+            experimenting: Arc::default(),
             job: Mutex::default(),
             moved: Mutex::default(),
             live: Live::new(),
@@ -107,11 +116,6 @@ impl Desk {
         let full =
             |_| Failure::failed("busy", "too much is asked at once: wait until some of it is answered");
         Arc::clone(&self.waiting[of]).try_acquire_owned().map_err(full)
-    }
-
-    /// Held while an experiment is made.
-    pub(crate) fn one_experiment(&self) -> MutexGuard<'_, ()> {
-        locked(&self.experimenting)
     }
 
     pub(crate) fn work(&self) -> Arc<Work> {
@@ -166,21 +170,30 @@ impl Desk {
         Ok(())
     }
 
-    /// Plans a picture. What the same page asked for before and is not done is ended.
+    /// Takes a plan on that is to be made. What the same page asked for before and is not done is ended.
     ///
     /// # Errors
-    /// What the program says; `interrupted` where the page has asked for another since.
-    pub(crate) fn plan(
+    /// What is wrong with it; `interrupted` where the page has asked for another since.
+    pub(crate) fn begin_plan(
         &self,
         page: (&str, u64),
         picture: &str,
         flags: &Map<String, Value>,
-    ) -> Result<Value, Failure> {
+    ) -> Result<Planned, Failure> {
         let command = self.command("plan", picture, flags, Which::Drawing)?;
         let work = self.work();
-        let _ended = AtLast(Arc::clone(&work));
+        let planned = Planned { command, work: AtLast(Arc::clone(&work)) };
         self.wish(page, &work)?;
-        let _planning = locked(&self.planning);
+        Ok(planned)
+    }
+
+    /// Makes a plan: while one is made no other one is.
+    ///
+    /// # Errors
+    /// What the program says; `interrupted` where the page has asked for another since.
+    pub(crate) fn plan(&self, planned: Planned) -> Result<Value, Failure> {
+        let Planned { command, work: last } = planned;
+        let work = Arc::clone(&last.0);
         // somebody may have wished for another while this one waited
         work.stop.check()?;
         let table = self.folder.table(work.id);
@@ -203,6 +216,16 @@ impl Desk {
             "id": work.id, "command": typed(&traced(&command)), "plan": answer, "remarks": work.remarks(),
             "points": format!("/api/v1/plans/{}/points", work.id),
         }))
+    }
+
+    /// Takes note of what somebody who operates has planned.
+    pub(crate) fn note(&self, picture: &str, flags: &Map<String, Value>) {
+        *locked(&self.last) = json!({ "picture": picture, "flags": flags });
+    }
+
+    /// What was planned last; null where nothing was.
+    pub(crate) fn last(&self) -> Value {
+        locked(&self.last).clone()
     }
 
     /// A plan's points.

@@ -103,7 +103,6 @@ impl Desk {
             let more = more.iter().map(|&word| word.to_owned());
             command[..at].iter().cloned().chain(more).chain(command[at..].iter().cloned()).collect()
         };
-        let _one = self.one_experiment();
         let to = plot.to_string_lossy();
         let figures =
             self.program.perform(&with(&["--json", "--quiet", "-o", &to]), None, (&*work, &work.stop));

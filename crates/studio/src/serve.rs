@@ -19,6 +19,8 @@ use crate::program::Program;
 use crate::server::router;
 use crate::session::links;
 
+/// Threads for what computes or reads files: a job, a plan, an experiment, a move, and files that are read meanwhile.
+const THREADS: usize = 12;
 /// How often is looked whether it is to end.
 const LOOK: Duration = Duration::from_millis(50);
 /// Connections at once: of this computer, and of the network, whose devices take no room from it.
@@ -121,6 +123,9 @@ impl Studio {
         let failed = |e: std::io::Error| Failure::failed("internal", format!("cannot serve the studio: {e}"));
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
+            // few that stay: each has memory of its own, which comes back to nobody else
+            .max_blocking_threads(THREADS)
+            .thread_keep_alive(Duration::from_secs(3600))
             .enable_all()
             .build()
             .map_err(failed)?;

@@ -172,7 +172,18 @@ async fn plan(
     let _waits = desk.waits(&caller)?;
     // a page of another device is another page, whatever it calls itself
     let page = if page.is_empty() { page } else { format!("{}:{page}", caller.device) };
-    beside(move || desk.plan((&page, number), &picture, &flags)).await.map(Json)
+    let planned = desk.begin_plan((&page, number), &picture, &flags)?;
+    let turn = Arc::clone(&desk.planning).lock_owned().await;
+    beside(move || {
+        let _turn = turn;
+        let made = desk.plan(planned)?;
+        if caller.operates() {
+            desk.note(&picture, &flags);
+        }
+        Ok(made)
+    })
+    .await
+    .map(Json)
 }
 
 async fn points(State(desk): Shared, Path(id): Path<u64>) -> Response {
@@ -264,7 +275,13 @@ async fn lab(
         ))
     })?;
     let _waits = desk.waits(&caller)?;
-    beside(move || desk.experiment(&asked)).await.map(Json)
+    let turn = Arc::clone(&desk.experimenting).lock_owned().await;
+    beside(move || {
+        let _turn = turn;
+        desk.experiment(&asked)
+    })
+    .await
+    .map(Json)
 }
 
 /// Never refused, whatever is sent with it.

@@ -11,6 +11,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use tracelight_task::Failure;
 
+use crate::desk::Desk;
 use crate::devices::{Caller, Devices, INVITED, Role};
 use crate::guard::COOKIE_NAME;
 use crate::lan::{Lan, code_svg};
@@ -24,13 +25,15 @@ pub(crate) async fn told(
     Extension(caller): Extension<Caller>,
     State(lan): Network,
     State(devices): Known,
+    State(desk): State<Arc<Desk>>,
 ) -> Json<Value> {
     let operates = caller.operates();
     let lan = lan.filter(|_| operates);
     let lan = lan.map(|lan| json!({ "addresses": lan.addresses(), "fingerprint": lan.fingerprint }));
     let devices = operates.then(|| devices.json());
+    let last = caller.role.map(|_| desk.last());
     Json(
-        json!({ "role": caller.role, "local": caller.is_local, "device": caller.device, "lan": lan, "devices": devices }),
+        json!({ "role": caller.role, "local": caller.is_local, "device": caller.device, "lan": lan, "devices": devices, "last": last }),
     )
 }
 
