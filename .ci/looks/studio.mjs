@@ -309,6 +309,7 @@ const devices = async () => {
   const began = Date.now()
   await thief.click('#stop')
   await until(phone, 'a device that has not joined does not stop it', () => /Stopped/.test(document.getElementById('state').textContent))
+  await until(phone, 'it is not told that somebody else stopped it', () => /Somebody else/.test(document.getElementById('said').textContent))
   const took = Date.now() - began
   // sent away, it is missed, and nobody
   await hold(phone, 1100)

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use tracelight_chart::{Colour, Rgb, Theme};
 use tracelight_rig::TICK_F64_S;
 use tracelight_sim::Run;
 use tracelight_stroke::Point;
@@ -71,18 +72,23 @@ pub fn film(of: &Film<'_>) -> Option<String> {
     let (width, height) = (WIDE + 2.0 * MARGIN, high + 2.0 * MARGIN + FOOT);
     let mut svg = head(of, (width, height), (lasts_s, faster));
     paths(&mut svg, &strokes, shown_s, share);
-    let below = height - FOOT;
+    let (below, rule, light) = (height - FOOT, Theme::Dark.rule(), light());
     let end = share(lasts_s);
     // writing to a String cannot fail
     let _ = write!(
         svg,
-        "<rect x=\"{MARGIN}\" y=\"{below:.1}\" width=\"{WIDE}\" height=\"3\" fill=\"#2a2c31\"/>\n\
-         <rect x=\"{MARGIN}\" y=\"{below:.1}\" width=\"{WIDE}\" height=\"3\" fill=\"#ff5a66\">\
+        "<rect x=\"{MARGIN}\" y=\"{below:.1}\" width=\"{WIDE}\" height=\"3\" fill=\"{rule}\"/>\n\
+         <rect x=\"{MARGIN}\" y=\"{below:.1}\" width=\"{WIDE}\" height=\"3\" fill=\"{light}\">\
          <animate attributeName=\"width\" dur=\"{shown_s:.2}s\" repeatCount=\"indefinite\" keyTimes=\"0;{end:.4};1\" values=\"0;{WIDE};{WIDE}\"/></rect>\n"
     );
     spot(&mut svg, &thinned_all(&all, &strokes), shown_s, share);
     svg.push_str("</svg>\n");
     Some(svg)
+}
+
+/// The light's colour on a dark wall.
+const fn light() -> Rgb {
+    Colour::Light.rgb(Theme::Dark)
 }
 
 /// How many times as fast a run is shown that lasts so long: 1, 2, 5, 10, 20 …
@@ -151,6 +157,7 @@ fn thinned(run: &[Place], tolerance: f64) -> Vec<Place> {
 fn head(of: &Film<'_>, (width, height): (f64, f64), (lasts_s, faster): (f64, f64)) -> String {
     // wherever it lies
     let name = escaped(of.name.rsplit(['/', '\\']).next().unwrap_or(of.name));
+    let (wall, soft) = (Theme::Dark.wall(), Theme::Dark.soft());
     let size = format!("{:.0} × {:.0} cm", 100.0 * of.target.width_m, 100.0 * of.target.height_m);
     let times = if faster > 1.0 { format!(", shown {faster} times as fast") } else { String::new() };
     let by = if of.simulated { " · simulated" } else { "" };
@@ -158,14 +165,15 @@ fn head(of: &Film<'_>, (width, height): (f64, f64), (lasts_s, faster): (f64, f64
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" height=\"{height:.0}\" font-family=\"sans-serif\" role=\"img\">\n\
          <title>{name}, drawn by a spot of light</title>\n\
          <desc>{size} on a wall in {lasts_s:.1} s{times}{by}</desc>\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#0c0d0f\"/>\n\
-         <text x=\"{MARGIN}\" y=\"{:.1}\" font-size=\"14\" fill=\"#a9a59c\">{name} · {size} in {lasts_s:.1} s{times}{by}</text>\n",
+         <rect width=\"100%\" height=\"100%\" fill=\"{wall}\"/>\n\
+         <text x=\"{MARGIN}\" y=\"{:.1}\" font-size=\"14\" fill=\"{soft}\">{name} · {size} in {lasts_s:.1} s{times}{by}</text>\n",
         height - 0.35 * FOOT,
     )
 }
 
 /// The strokes: faint as they will be, and lit as the spot goes along them.
 fn paths(svg: &mut String, strokes: &[Vec<Place>], shown_s: f64, share: impl Fn(f64) -> f64) {
+    let (ink, light) = (Theme::Dark.ink(), light());
     let join = "fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\"";
     let mut faint = String::new();
     let mut lit = String::new();
@@ -189,12 +197,12 @@ fn paths(svg: &mut String, strokes: &[Vec<Place>], shown_s: f64, share: impl Fn(
     let glow: String = (1..=strokes.len()).map(|number| format!("<use href=\"#s{number}\"/>")).collect();
     let _ = write!(
         svg,
-        "<g {join} stroke=\"#ffffff\" stroke-opacity=\"0.13\" stroke-width=\"1.5\">\n{faint}</g>\n\
+        "<g {join} stroke=\"{ink}\" stroke-opacity=\"0.14\" stroke-width=\"1.5\">\n{faint}</g>\n\
          <defs>\n{lit}</defs>\n\
-         <g {join} stroke=\"#ff2a3c\" stroke-opacity=\"0.12\" stroke-width=\"17\">{glow}</g>\n\
-         <g {join} stroke=\"#ff2a3c\" stroke-opacity=\"0.3\" stroke-width=\"9\">{glow}</g>\n\
-         <g {join} stroke=\"#ff5a66\" stroke-width=\"4\">{glow}</g>\n\
-         <g {join} stroke=\"#ffe3e2\" stroke-width=\"1.6\">{glow}</g>\n"
+         <g {join} stroke=\"{light}\" stroke-opacity=\"0.12\" stroke-width=\"17\">{glow}</g>\n\
+         <g {join} stroke=\"{light}\" stroke-opacity=\"0.3\" stroke-width=\"9\">{glow}</g>\n\
+         <g {join} stroke=\"{light}\" stroke-width=\"4\">{glow}</g>\n\
+         <g {join} stroke=\"{ink}\" stroke-width=\"1.6\">{glow}</g>\n"
     );
 }
 
@@ -247,13 +255,14 @@ fn spot(svg: &mut String, way: &[Place], shown_s: f64, share: impl Fn(f64) -> f6
             "<animate attributeName=\"{name}\" dur=\"{shown_s:.2}s\" repeatCount=\"indefinite\" keyTimes=\"{times}\" values=\"{values}\"/>"
         )
     };
+    let (ink, light, dark) = (Theme::Dark.ink(), light(), Theme::Dark.dark_way());
     let (along_x, along_y) = (along("cx", &xs), along("cy", &ys));
     let _ = write!(
         svg,
-        "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"none\" stroke=\"#8a8f99\" stroke-width=\"1.5\">{along_x}{along_y}</circle>\n\
+        "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"none\" stroke=\"{dark}\" stroke-width=\"1.5\">{along_x}{along_y}</circle>\n\
          <g opacity=\"0\"><animate attributeName=\"opacity\" calcMode=\"discrete\" dur=\"{shown_s:.2}s\" repeatCount=\"indefinite\" keyTimes=\"{turns}\" values=\"{shown}\"/>\
-         <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"13\" fill=\"#ff2a3c\" fill-opacity=\"0.35\">{along_x}{along_y}</circle>\
-         <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"5\" fill=\"#fff4f3\">{along_x}{along_y}</circle></g>\n"
+         <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"13\" fill=\"{light}\" fill-opacity=\"0.35\">{along_x}{along_y}</circle>\
+         <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"5\" fill=\"{ink}\">{along_x}{along_y}</circle></g>\n"
     );
 }
 

@@ -28,6 +28,8 @@ const GROUPS = [
       { flag: 'threshold', label: 'Least contrast', hint: 'auto, 30' },
       { flag: 'despeckle', label: 'Smallest speck', hint: 'auto, 20' },
       { flag: 'min_length', label: 'Shortest stroke', hint: '8px, 5mm' },
+      { flag: 'layer', label: 'Only layer', hint: 'studs' },
+      { flag: 'colour', label: 'Only colour', hint: 'red, #1f63c4' },
       { flag: 'unit', label: 'Unit of a DXF', choices: [['', 'as the file says'], ['mm', 'mm'], ['cm', 'cm'], ['m', 'm'], ['in', 'in'], ['ft', 'ft']] },
     ],
   },

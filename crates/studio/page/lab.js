@@ -74,6 +74,7 @@ export class Lab {
     by('lab-plot').replaceChildren()
     by('lab-words').textContent = by('lab-command').textContent = ''
     by('lab-text').replaceChildren()
+    by('lab').classList.toggle('learns', lesson !== undefined)
     if (lesson) this.#lesson(lesson)
     else this.#experiment(experiment)
   }

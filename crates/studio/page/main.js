@@ -88,8 +88,10 @@ function boxOf(flags) {
 
 const run = new Run(page, {
   asked: () => store.asked,
-  at: (left_s, lit) => {
+  at: (left_s, lit, of_s) => {
     wall.dark = left_s >= 0 && !lit
+    // what was left out before it began is not lit
+    wall.lit.from(left_s < 0 ? 0 : timeline.rowBefore(of_s))
     if (left_s < 0) timeline.rest()
     else timeline.to(left_s)
   },

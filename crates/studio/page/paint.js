@@ -14,6 +14,15 @@ export class Lit {
     /** What is drawn already, and for which view. */
     this.tick = 0
     this.of = ''
+    /** The row at which a job began: what is before it was left out. */
+    this.begins = 0
+  }
+
+  /** Nothing before a row is lit. @param {number} row */
+  from(row) {
+    if (row === this.begins) return
+    this.begins = row
+    this.forget()
   }
 
   forget() {
@@ -41,9 +50,9 @@ export class Lit {
     const px = (/** @type {number} */ n) => wall.clientWidth / 2 + (points.x[n] - view.x) * view.scale
     const py = (/** @type {number} */ n) => wall.clientHeight / 2 - (points.y[n] - view.y) * view.scale
     const last = Math.min(tick, points.rows - 1)
-    for (let n = this.tick; n < last; n++) {
+    for (let n = Math.max(this.tick, this.begins); n < last; n++) {
       if (points.lit[n] === 0) continue
-      if (n === this.tick || points.lit[n - 1] === 0) context.moveTo(px(n), py(n))
+      if (n === this.tick || n === this.begins || points.lit[n - 1] === 0) context.moveTo(px(n), py(n))
       context.lineTo(px(n + 1), py(n + 1))
     }
     context.stroke()

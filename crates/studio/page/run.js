@@ -10,6 +10,8 @@ import { plain, time } from './words.js'
 
 /** What was told longer ago is not known any more, ms. */
 const STALE = 400
+/** How long it is known why a job stops, ms. */
+const KNOWN = 2000
 /** States in which the job is on. */
 const ON = ['tracing', 'stepping', 'pointing', 'framing', 'returning', 'pausing']
 /** What states are called. @type {Record<string, string>} */
@@ -19,8 +21,8 @@ const STATES = {
 }
 
 /**
- * @typedef {{ asked: () => { picture: string, flags: api.Flags }, at: (left_s: number, lit: boolean) => void, stroke: (number: number, share: number, lit: boolean) => void, mark: (at: [number, number] | null) => void, ended: (job: api.Job) => void, problem: (error: unknown) => void, lamp: (text: string, lit: boolean) => void, heads: () => void }} Hooks
- *   what is shown; how long of the plan is left, s, −1 for nowhere, and whether there is light; the stroke that is drawn again and again; the place that is marked; how it ended
+ * @typedef {{ asked: () => { picture: string, flags: api.Flags }, at: (left_s: number, lit: boolean, of_s: number) => void, stroke: (number: number, share: number, lit: boolean) => void, mark: (at: [number, number] | null) => void, ended: (job: api.Job) => void, problem: (error: unknown) => void, lamp: (text: string, lit: boolean) => void, heads: () => void }} Hooks
+ *   what is shown; how long of the plan is left, s, −1 for nowhere, whether there is light, and how long all of the job's plan is; the stroke that is drawn again and again; the place that is marked; how it ended
  */
 
 /** @template {HTMLElement} T @param {string} id @returns {T} */
@@ -40,6 +42,8 @@ export class Run {
     this.framing = false
     /** @type {api.RunTold | null} the run whose rest is to be drawn */
     this.rest = null
+    /** Until when it is known why it stops, ms. */
+    this.knows = 0
     /** A job is followed to its end. */
     this.follows = false
     /** The job has told how far it is. */
@@ -188,7 +192,7 @@ export class Run {
     this.live.close()
     this.#show()
     this.hooks.lamp(ended ? '● Dark' : '? Unknown', false)
-    this.hooks.at(-1, false)
+    this.hooks.at(-1, false, 0)
     this.hooks.mark(null)
     this.point = null
     this.#wake()
@@ -201,6 +205,7 @@ export class Run {
 
   /** Stops it: anybody may. */
   stop() {
+    this.#know()
     this.arm.cancel()
     this.live.wish('stop')
   }
@@ -242,6 +247,11 @@ export class Run {
     }
   }
 
+  /** For a moment it is known why it stops. */
+  #know() {
+    this.knows = performance.now() + KNOWN
+  }
+
   /** @param {string} wish */
   #ask(wish) {
     navigator.vibrate?.(30)
@@ -266,6 +276,7 @@ export class Run {
       this.mine = this.live.operates = this.on && this.operates && operator === this.page
       this.#wake()
       by('asks').hidden = true
+      if (told.event === 'operator') this.#know()
       if (told.mode) this.mode = told.mode
       if (told.event === 'begun') {
         // nothing of the one before holds
@@ -304,6 +315,7 @@ export class Run {
     } else if (told.event === 'fault') {
       this.#say(`${told.code}: ${told.message}`)
     } else if (told.event === 'lost') {
+      this.#know()
       this.#say(told.dark ? 'The page that operates it is not heard: stopped, dark.' : 'The page that operates it is not heard: it pauses.')
     } else if (told.event === 'point') {
       this.point = told
@@ -315,6 +327,7 @@ export class Run {
         this.now = { ...this.now, gate: false }
         this.#place()
       }
+      if (told.to === 'stopped' && this.mine && performance.now() > this.knows) this.#say('Somebody else stopped it.')
       // what was wrong before is over
       if (ON.includes(told.to) || told.to === 'armed') this.#say('')
     }
@@ -324,10 +337,10 @@ export class Run {
   /** Shows on the wall how far it is. */
   #place() {
     const { now } = this
-    if (this.framing || !(now.of_s > 0)) this.hooks.at(-1, false)
-    else if (this.mode === 'trace') this.hooks.at(now.of_s - now.plan_s, now.gate)
+    if (this.framing || !(now.of_s > 0)) this.hooks.at(-1, false, 0)
+    else if (this.mode === 'trace') this.hooks.at(now.of_s - now.plan_s, now.gate, now.of_s)
     else if (this.mode === 'step' && now.stroke) this.hooks.stroke(now.stroke, now.plan_s / now.of_s, now.gate)
-    else this.hooks.at(-1, false)
+    else this.hooks.at(-1, false, 0)
   }
 
   /** @param {string} text */

@@ -43,7 +43,12 @@ export class Timeline {
   to(left_s) {
     this.#stop()
     if (this.rows < 2 || !(this.seconds > 0)) return
-    this.#set(Math.round(Math.min(1, Math.max(0, 1 - left_s / this.seconds)) * (this.rows - 1)))
+    this.#set(this.rowBefore(left_s))
+  }
+
+  /** The row after which so much is left. @param {number} left_s s */
+  rowBefore(left_s) {
+    return Math.round(Math.min(1, Math.max(0, 1 - left_s / Math.max(this.seconds, 1e-3))) * Math.max(0, this.rows - 1))
   }
 
   toggle() {

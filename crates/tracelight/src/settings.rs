@@ -12,7 +12,7 @@ pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Se
     let rows = [
         (if args.eye.camera.is_some() { "camera" } else { "picture" }, shown(args.name())),
         ("size", format!("{} × {}", mm(placed.size_m.0), mm(placed.size_m.1))),
-        ("offset", args.placement.offset.map_or("none".into(), |o| format!("{}, {}", o.0, o.1))),
+        ("offset", args.placement.offset.map_or("none".into(), |o| format!("{}, {}", mm(o.0.0), mm(o.1.0)))),
         ("rotate", args.placement.rotate.map_or("none".into(), |a| a.to_string())),
         ("flip", if args.placement.flip { "yes" } else { "no" }.into()),
         ("distance", mm(driving.pose.distance_m)),
