@@ -2,10 +2,9 @@
 /** Two runs side by side: their walls under one cursor, their figures, what was asked of only one. */
 
 import * as api from './api.js'
-import { element } from './runs.js'
+import { by, element } from './dom.js'
+import { named } from './words.js'
 
-/** @template {HTMLElement} T @param {string} id @returns {T} */
-const by = (id) => /** @type {T} */ (document.getElementById(id))
 const MOST = 40
 
 /** Walls that move and zoom together. */
@@ -110,12 +109,9 @@ export async function showCompared(first, second) {
   )
   by('compare-figures').replaceChildren(element('thead', {}, head), element('tbody', {}, ...rows))
   const asked = [[first, told.only_first_asked], [second, told.only_second_asked]]
-  const lines = asked.filter(([, words]) => words.length > 0).map(([id, words]) => element('p', {}, `Only ${id} was asked: `, element('code', { text: /** @type {string[]} */ (words).map(short).join(' ') })))
+  const lines = asked.filter(([, words]) => words.length > 0).map(([id, words]) => element('p', {}, `Only ${id} was asked: `, element('code', { text: /** @type {string[]} */ (words).map((word) => (word.startsWith('--') ? word : named(word))).join(' ') })))
   if (lines.length === 0) lines.push(element('p', { text: 'Both were asked the same.' }))
   for (const run of [told.first, told.second]) if (!run.finished) lines.push(element('p', { class: 'said', text: `${run.id} did not finish: its figures are of the part that was drawn.` }))
   if (!told.same_drawing) lines.push(element('p', { class: 'said', text: 'They have other strokes: the figures are of two drawings.' }))
   by('compare-asked').replaceChildren(...lines)
 }
-
-/** A picture by its name alone. @param {string} word */
-const short = (word) => (word.startsWith('--') ? word : word.split(/[\\/]/).pop() ?? word)

@@ -2,13 +2,10 @@
 /** Devices of the network: whether this one has joined, who else has, and how one is invited. */
 
 import * as api from './api.js'
-import { element } from './runs.js'
+import { by, element } from './dom.js'
 
 /** How often the list is looked at while it is shown, ms. */
 const LOOK = 2000
-
-/** @template {HTMLElement} T @param {string} id @returns {T} */
-const by = (id) => /** @type {T} */ (document.getElementById(id))
 
 /** Joins by the invitation in the address, if there is one, and tells who this page is then. @returns {Promise<api.Session>} */
 export async function arrive() {

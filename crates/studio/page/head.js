@@ -2,10 +2,8 @@
 /** The head at a port, moved by hand: jogged, told that it points straight ahead, taken there. Always dark. */
 
 import * as api from './api.js'
+import { by } from './dom.js'
 import { plain } from './words.js'
-
-/** @template {HTMLElement} T @param {string} id @returns {T} */
-const by = (id) => /** @type {T} */ (document.getElementById(id))
 
 export class HeadPad {
   /** @param {(error: unknown) => void} problem */

@@ -2,7 +2,7 @@
 /** The lab: experiments of a command line each, with its plot, figures and words; lessons with questions that the simulator grades. */
 
 import * as api from './api.js'
-import { element } from './runs.js'
+import { by, element } from './dom.js'
 
 /** How long what is typed rests before it is asked, ms. */
 const REST = 200
@@ -41,9 +41,6 @@ const EXPERIMENTS = [
   { command: 'gang', name: 'Gang of four', words: 'What a loop lets through: its sensitivities, with their peaks.', systems: 'G11', fields: [{ flag: 'controller', label: 'Controller', value: 'K11', hint: 'K11' }] },
 ]
 const LESSONS = 8
-
-/** @template {HTMLElement} T @param {string} id @returns {T} */
-const by = (id) => /** @type {T} */ (document.getElementById(id))
 
 export class Lab {
   /** @param {(error: unknown) => void} problem */

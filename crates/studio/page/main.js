@@ -2,6 +2,7 @@
 /** The page: what is asked of whom, in which order. */
 
 import * as api from './api.js'
+import { by, element } from './dom.js'
 import { Fields, asLabelled } from './fields.js'
 import { showCompared } from './compare.js'
 import { HeadPad } from './head.js'
@@ -9,7 +10,7 @@ import { Devices, arrive } from './devices.js'
 import { Lab } from './lab.js'
 import { keep, kept, themes } from './kept.js'
 import { Pictures } from './pictures.js'
-import { Runs, element, follow, showResult } from './runs.js'
+import { Runs, follow, showResult } from './runs.js'
 import { Run } from './run.js'
 import { Store } from './store.js'
 import { Timeline } from './timeline.js'
@@ -26,8 +27,6 @@ const LOOK = 1000
 const PLAYED_S = 6
 const VIEWS = ['place', 'run', 'runs', 'compare', 'lab', 'devices']
 
-/** @template {HTMLElement} T @param {string} id @returns {T} */
-const by = (id) => /** @type {T} */ (document.getElementById(id))
 const page = crypto.randomUUID()
 const session = await arrive().catch(() => null)
 const operates = session?.role === 'operator'

@@ -2,13 +2,10 @@
 /** Pictures and drawings: the strip of those that there are, taking one in, deleting one. */
 
 import * as api from './api.js'
-import { element } from './runs.js'
+import { by, element } from './dom.js'
 
 /** Most that are shown. */
 const MOST = 40
-
-/** @template {HTMLElement} T @param {string} id @returns {T} */
-const by = (id) => /** @type {T} */ (document.getElementById(id))
 
 export class Pictures {
   /** @param {{ choose: (picture: string) => void, chosen: () => string, problem: (error: unknown) => void, operates: boolean }} hooks what is put on the wall, and what is there */

@@ -2,10 +2,11 @@
 /** Somebody attends a job: before light, arming, and what may be asked while it is drawn. */
 
 import * as api from './api.js'
+import { by, element } from './dom.js'
 import { asLabelled } from './fields.js'
 import { Hold } from './hold.js'
 import { Live } from './live.js'
-import { element, follow } from './runs.js'
+import { follow } from './runs.js'
 import { plain, time } from './words.js'
 
 /** What was told longer ago is not known any more, ms. */
@@ -24,9 +25,6 @@ const STATES = {
  * @typedef {{ asked: () => { picture: string, flags: api.Flags }, at: (left_s: number, lit: boolean, of_s: number) => void, stroke: (number: number, share: number, lit: boolean) => void, mark: (at: [number, number] | null) => void, ended: (job: api.Job) => void, problem: (error: unknown) => void, lamp: (text: string, lit: boolean) => void, heads: () => void }} Hooks
  *   what is shown; how long of the plan is left, s, −1 for nowhere, whether there is light, and how long all of the job's plan is; the stroke that is drawn again and again; the place that is marked; how it ended
  */
-
-/** @template {HTMLElement} T @param {string} id @returns {T} */
-const by = (id) => /** @type {T} */ (document.getElementById(id))
 
 /** What is typed or chosen in a field. @param {string} id */
 const field = (id) => /** @type {HTMLInputElement} */ (by(id))
@@ -165,8 +163,6 @@ export class Run {
       this.live.open()
       await api.attend({ page: this.page, ...this.#flags() })
       this.#show()
-      // on a phone what comes next is in view
-      setTimeout(() => scrollTo({ top: 0 }), 100)
       await this.followed()
     } catch (error) {
       this.hooks.problem(error)
@@ -287,6 +283,8 @@ export class Run {
         this.point = null
         this.framing = false
         this.heard = performance.now()
+        // on a phone what comes next is in view, before anybody can hold a button there
+        if (this.mine) scrollTo({ top: 0 })
       }
     } else if (told.event === 'progress') {
       this.now = told

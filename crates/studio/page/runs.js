@@ -2,24 +2,14 @@
 /** Runs: the one that goes on, and those that were. */
 
 import { Refusal, discard, job, restore, runFile, runs } from './api.js'
-import { length, plain, size, time } from './words.js'
+import { by, element } from './dom.js'
+import { length, named, plain, size, time } from './words.js'
 
 /** How often is asked how far a job is, ms. */
 const EVERY = 120
 
 /** Who tells where the light was, where no simulation does. @type {Record<string, string>} */
 const SEEN_BY = { encoders: 'As its encoders say: nobody saw the light.', commands: 'As it was commanded: nobody measured the head.' }
-
-/** Elements of text, classes and children. @param {string} name @param {{ text?: string, class?: string, [attribute: string]: string | undefined }} [how] @param {(Node | string)[]} children */
-export function element(name, how = {}, ...children) {
-  const made = document.createElement(name)
-  for (const [key, value] of Object.entries(how)) {
-    if (key === 'text') made.textContent = value ?? ''
-    else if (value !== undefined) made.setAttribute(key, value)
-  }
-  made.append(...children)
-  return made
-}
 
 /** Waits until the job is over, and tells how far it is; for as long as it takes where somebody attends it, whatever becomes of the line. @param {(job: import('./api.js').Job) => void} told @param {boolean} [patiently] @returns {Promise<import('./api.js').Job | null>} */
 export async function follow(told, patiently = false) {
@@ -68,9 +58,6 @@ export function showResult(card, ended) {
  * @typedef {{ again: (run: RunTold) => void, rest: (run: RunTold) => void, from: (run: RunTold, stroke: number) => void, problem: (error: unknown) => void, operates: boolean }} Hooks
  *   places the drawing of a run again; goes on with one; begins at a stroke of it; what went wrong; whether this device may do that
  */
-
-/** @param {string} id @returns {HTMLElement} */
-const by = (id) => /** @type {HTMLElement} */ (document.getElementById(id))
 
 /** The list of runs, the newest first. */
 export class Runs {
@@ -191,11 +178,11 @@ function figures(run) {
   const strokes = run.points ? '' : `, ${run.strokes} strokes`
   const lines = [`${length(run.width_m)} × ${length(run.height_m)}${strokes}${run.duration_s ? `, ${time(run.duration_s)}` : ''}`]
   if (run.running) lines.push('It is being drawn now.')
-  else if (run.went_on_in) lines.push(`Went on in ${run.went_on_in.split(/[\\/]/).pop()}.`)
+  else if (run.went_on_in) lines.push(`Went on in ${named(run.went_on_in)}.`)
   else if (run.points) lines.push(`${run.points.done} of ${run.points.count} points marked.`)
   else if (run.mode === 'step') lines.push('Stroke by stroke.')
   else if (!run.finished) lines.push(progress ? `Ended at stroke ${progress.stroke} of ${progress.strokes}.` : 'Ended before it began.')
-  if (run.goes_on_with) lines.push(`The rest of ${run.goes_on_with.split(/[\\/]/).pop()}.`)
+  if (run.goes_on_with) lines.push(`The rest of ${named(run.goes_on_with)}.`)
   if (run.finished && run.max_mm !== null) lines.push(`${plain(run.max_mm, 2)} mm off at most`)
   return lines
 }

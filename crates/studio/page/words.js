@@ -63,3 +63,6 @@ export function size(bytes) {
   if (bytes < 1e4) return `${bytes} B`
   return bytes < 1e6 ? `${plain(bytes / 1e3, 0)} kB` : `${plain(bytes / 1e6, 1)} MB`
 }
+
+/** What a path ends with. @param {string} path */
+export const named = (path) => path.split(/[\\/]/).pop() ?? path

@@ -28,12 +28,13 @@ macro_rules! script {
 }
 
 /// The page first.
-pub(crate) static ASSETS: [Asset; 21] = [
+pub(crate) static ASSETS: [Asset; 22] = [
     asset!("index.html", "text/html; charset=utf-8"),
     asset!("style.css", "text/css; charset=utf-8"),
     asset!("icon.svg", "image/svg+xml"),
     script!("main.js"),
     script!("api.js"),
+    script!("dom.js"),
     script!("store.js"),
     script!("wall.js"),
     script!("paint.js"),

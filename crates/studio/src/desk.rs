@@ -11,8 +11,8 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tracelight_task::Failure;
 
 use crate::devices::Caller;
-use crate::flags::{Which, arguments, typed};
-use crate::folder::Folder;
+use crate::flags::{Which, arguments, mode_of, typed};
+use crate::folder::{Folder, no_run};
 use crate::live::Live;
 use crate::points;
 use crate::program::{Head, Performed, Program, Seat};
@@ -268,9 +268,8 @@ impl Desk {
         run: &str,
         flags: &Map<String, Value>,
     ) -> Result<(Vec<String>, String, Value, bool), Failure> {
-        let none = || Failure::usage("unreadable", format!("there is no run {run:?} in the studio's folder"));
-        let told = self.run(run)?.ok_or_else(none)?;
-        let dir = self.folder.run(run).ok_or_else(none)?;
+        let dir = self.run_dir(run)?;
+        let told = self.run(run)?.ok_or_else(|| no_run(run))?;
         let rig = told["rig"].as_str();
         let head = self.program.head();
         let is_heads = |rig: &str| {
@@ -284,7 +283,7 @@ impl Desk {
             );
             return Err(Failure::usage("usage", message));
         }
-        let mut command = vec!["resume".to_owned(), dir.to_string_lossy().into_owned()];
+        let mut command = vec!["resume".to_owned(), dir];
         command.extend(arguments(flags, Which::Rest, &[])?);
         let picture = told["picture"].as_str().unwrap_or("picture.png").to_owned();
         let keeps_time = head.is_some_and(|head| head.is_at_port && rig == Some(head.draws_as.as_str()));
@@ -328,16 +327,7 @@ impl Desk {
         command.extend(["--out".to_owned(), dir.to_string_lossy().into_owned(), "--json".to_owned()]);
         let desk = Arc::clone(self);
         let (begun, is_live) = (self.job(), operator.is_some());
-        let is_set = |flag: &str| {
-            wanted.flags.get(flag).is_some_and(|value| !matches!(value, Value::Null | Value::Bool(false)))
-        };
-        let mode = if is_set("step") {
-            "step"
-        } else if is_set("points") {
-            "points"
-        } else {
-            "trace"
-        };
+        let mode = mode_of(&command);
         operator.iter().for_each(|page| self.live.begin(page, mode));
         Ok((begun, move || {
             let _last = last;

@@ -155,6 +155,16 @@ pub(crate) fn asked_by(command: &[String]) -> Option<(&str, Map<String, Value>)>
     (name == "trace").then_some((picture.as_str(), flags))
 }
 
+/// How a command line draws strokes: all, one at a time, or points.
+pub(crate) fn mode_of(command: &[String]) -> &'static str {
+    let has = |flag: &str| command.iter().any(|argument| argument.split('=').next() == Some(flag));
+    match (has("--step"), has("--points")) {
+        (true, _) => "step",
+        (false, true) => "points",
+        (false, false) => "trace",
+    }
+}
+
 /// Puts a flag in: one that is there becomes a list.
 fn put(flags: &mut Map<String, Value>, flag: String, value: Option<&str>) {
     let value = value.map_or(Value::Bool(true), Value::from);

@@ -321,6 +321,11 @@ impl Folder {
     }
 }
 
+/// What is told of a run that there is not.
+pub(crate) fn no_run(id: &str) -> Failure {
+    Failure::usage("unreadable", format!("there is no run {id:?} in the studio's folder"))
+}
+
 /// What lies in the folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]

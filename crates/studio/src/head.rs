@@ -54,7 +54,7 @@ impl Desk {
     ///
     /// # Errors
     /// `usage` where there is none; `busy` while a job or another move is on; what the program says.
-    pub(crate) fn move_head(self: &Arc<Self>, by: &Move) -> Result<Value, Failure> {
+    pub(crate) fn move_head(&self, by: &Move) -> Result<Value, Failure> {
         let Some(head) = self.program.head().filter(|head| head.is_at_port) else {
             let message = "no head is at a port here: open the studio with --rig PORT:RIG";
             return Err(Failure::usage("usage", message));

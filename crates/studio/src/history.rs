@@ -4,7 +4,8 @@ use serde_json::{Value, json};
 use tracelight_task::Failure;
 
 use crate::desk::Desk;
-use crate::flags::asked_by;
+use crate::flags::{asked_by, mode_of};
+use crate::folder::no_run;
 
 /// The head that a command line names.
 fn rig_of(command: &[String]) -> Option<&str> {
@@ -19,14 +20,15 @@ impl Desk {
     /// What the program says.
     pub(crate) fn runs(&self) -> Result<Value, Failure> {
         let mut told = self.ask(&["runs", &self.folder.runs().to_string_lossy(), "--json"])?;
+        let rigs = self.program.rigs();
         for run in told["runs"].as_array_mut().into_iter().flatten() {
-            self.know(run);
+            self.know(run, &rigs);
         }
         Ok(told)
     }
 
     /// Adds a run's id, its files, and the picture and flags that it was asked by; null where no page can ask so.
-    fn know(&self, run: &mut Value) {
+    fn know(&self, run: &mut Value, rigs: &[String]) {
         let id = run["folder"]
             .as_str()
             .and_then(|dir| dir.rsplit(['/', '\\']).next())
@@ -40,19 +42,11 @@ impl Desk {
         });
         let (picture, mut flags) = asked.unzip();
         // another head, or none, is there now
-        let known = self.program.rigs();
-        let is_chosen = |rig: &Value| rig.as_str().is_some_and(|rig| known.iter().any(|known| known == rig));
+        let is_chosen = |rig: &Value| rigs.iter().any(|known| rig == known);
         let is_other = flags.as_ref().and_then(|flags| flags.get("rig")).is_some_and(|rig| !is_chosen(rig));
         flags.iter_mut().filter(|_| is_other).for_each(|flags| drop(flags.remove("rig")));
         run["rig"] = json!(rig_of(&command));
-        let has = |flag: &str| command.iter().any(|argument| argument.split('=').next() == Some(flag));
-        run["mode"] = json!(if has("--step") {
-            "step"
-        } else if has("--points") {
-            "points"
-        } else {
-            "trace"
-        });
+        run["mode"] = json!(mode_of(&command));
         run["files"] = json!(self.folder.run_files(&id));
         (run["id"], run["picture"], run["flags"]) = (json!(id), json!(picture), json!(flags));
     }
@@ -66,19 +60,23 @@ impl Desk {
         Ok(runs["runs"].as_array().into_iter().flatten().find(|run| run["id"] == id).cloned())
     }
 
+    /// Where a run's results are, by its id.
+    ///
+    /// # Errors
+    /// `unreadable` where there is none.
+    pub(crate) fn run_dir(&self, id: &str) -> Result<String, Failure> {
+        let dir = self.folder.run(id).map(|dir| dir.to_string_lossy().into_owned());
+        dir.ok_or_else(|| no_run(id))
+    }
+
     /// Two runs side by side, by their ids.
     ///
     /// # Errors
     /// `unreadable`; what the program says.
     pub(crate) fn compare(&self, first: &str, second: &str) -> Result<Value, Failure> {
-        let dir = |id: &str| {
-            let none =
-                || Failure::usage("unreadable", format!("there is no run {id:?} in the studio's folder"));
-            self.folder.run(id).map(|dir| dir.to_string_lossy().into_owned()).ok_or_else(none)
-        };
-        let mut told = self.ask(&["compare", &dir(first)?, &dir(second)?, "--json"])?;
-        self.know(&mut told["first"]);
-        self.know(&mut told["second"]);
+        let mut told = self.ask(&["compare", &self.run_dir(first)?, &self.run_dir(second)?, "--json"])?;
+        let rigs = self.program.rigs();
+        ["first", "second"].into_iter().for_each(|of| self.know(&mut told[of], &rigs));
         Ok(told)
     }
 }

@@ -59,9 +59,8 @@ impl Experiment {
         let has = |flag: &str| own.contains(&flag) || (has_systems && SYSTEM.contains(&flag));
         let mut all = vec!["lab".to_owned(), command.clone()];
         all.extend(named_values(flags, has, rigs)?);
-        for flag in ["controller"].into_iter().filter_map(|name| flags.get(name)?.as_str()) {
-            is_formula(flag)?;
-        }
+        // however often it is given
+        all.iter().filter_map(|word| word.strip_prefix("--controller=")).try_for_each(is_formula)?;
         if of.len() > MOST_SYSTEMS {
             return Err(Failure::usage(
                 "usage",
@@ -141,6 +140,10 @@ mod tests {
             (json!({ "command": "bode", "of": ["G11", "a.mat:G"] }), "is no formula"),
             (
                 json!({ "command": "gang", "of": ["G11"], "flags": { "controller": "k.json" } }),
+                "is no formula",
+            ),
+            (
+                json!({ "command": "gang", "of": ["G11"], "flags": { "controller": ["K11", "k.json"] } }),
                 "is no formula",
             ),
             (json!({ "command": "bode", "flags": { "with": "P=x.toml" } }), "with is no flag"),

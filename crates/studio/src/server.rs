@@ -24,7 +24,7 @@ use crate::assets::packed;
 use crate::desk::{Desk, Subject, Wanted};
 use crate::devices::Caller;
 use crate::door::Place;
-use crate::folder::{EXAMPLES, Kind, MOST_BYTES};
+use crate::folder::{EXAMPLES, Kind};
 use crate::guard::{Door, SHOWN, guard};
 use crate::head::Move;
 use crate::house::House;
@@ -41,7 +41,7 @@ pub(crate) fn router(house: House, door: Door) -> Router {
         .route("/about", get(about))
         .route("/openapi.json", get(openapi))
         .route("/explain/{code}", get(explain))
-        .route("/pictures", get(pictures).post(add).layer(DefaultBodyLimit::max(MOST_BYTES)))
+        .route("/pictures", get(pictures).post(add))
         .route("/pictures/{id}", get(picture).delete(discard_picture))
         .route("/plans", post(plan))
         .route("/plans/{id}/points", get(points))
@@ -69,7 +69,8 @@ pub(crate) fn router(house: House, door: Door) -> Router {
         )
         .nest("/api/v1", api)
         .fallback(|| async { Refused::missing("page").into_response() })
-        .layer(DefaultBodyLimit::max(1 << 16))
+        // the guard reads what is sent, within its bounds
+        .layer(DefaultBodyLimit::disable())
         .layer(from_fn_with_state(door, guard))
         .with_state(house)
 }

@@ -89,13 +89,16 @@ fn rig_of(name: &str, nor: &str) -> Result<RigConfig, Failure> {
     Ok(file.rig)
 }
 
+/// The head that is taken to be at a port of which nobody says what is there.
+const AT_PORT: &str = "report";
+
 /// Likewise, or a port with the head that is there: `PORT` or `PORT:RIG`.
 pub(crate) fn rig_or_port(name: &str) -> Result<(RigConfig, Option<At>), Failure> {
     let Some((port, head)) = rigfile::at_port(name, is_device) else {
         return Ok((rig_of(name, ", and there is no such port of a board")?, None));
     };
     let at = At { port: port.into(), is_said: head.is_some() };
-    match rig(head.unwrap_or("report"))? {
+    match rig(head.unwrap_or(AT_PORT))? {
         RigConfig { emulated: Some(_), .. } => {
             let message = format!(
                 "{name}: a board is at {port}, none is to be emulated: give {port}:RIG with the head that it drives"
@@ -128,9 +131,9 @@ pub(crate) fn from_root(name: &str) -> String {
     whole(name).or_else(behind).unwrap_or_else(|| name.to_owned())
 }
 
-/// The head that is at a port by a name of both; that of the preset `report` where it does not say. `None` of a name without a port.
+/// The head that is at a port by a name of both; [`AT_PORT`] where it does not say. `None` of a name without a port.
 pub(crate) fn head_at_port(name: &str) -> Option<&str> {
-    rigfile::at_port(name, is_device).map(|(_, head)| head.unwrap_or("report"))
+    rigfile::at_port(name, is_device).map(|(_, head)| head.unwrap_or(AT_PORT))
 }
 
 /// The port that a name means, which may say whose head is there.
