@@ -81,5 +81,5 @@ pub fn draw(
         coordinates: Coordinates::Page { unit_m: capitals_m.map(|_| 1e-3) },
         places: Vec::new(),
     };
-    Ok(Reading { sheet, remarks, doubt: None, is_list: false })
+    Ok(Reading { sheet, remarks, doubt: None, unit_guessed: false, is_list: false })
 }

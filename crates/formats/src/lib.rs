@@ -103,6 +103,8 @@ pub struct Reading {
     pub remarks: Vec<String>,
     /// Why its size cannot be meant, and what to do about it: one sentence, where nobody has said how large it is to be.
     pub doubt: Option<String>,
+    /// Nobody says what its unit is: it was taken for the millimetre.
+    pub unit_guessed: bool,
     /// A list of strokes that somebody made one by one, as JSON and CSV are: lines that are in it twice are meant twice.
     pub is_list: bool,
 }
@@ -111,7 +113,7 @@ impl Reading {
     /// A sheet whose strokes are all that its file lists.
     pub fn of_list(sheet: Sheet) -> Self {
         let doubt = sheet.doubt();
-        Self { sheet, remarks: Vec::new(), doubt, is_list: true }
+        Self { sheet, remarks: Vec::new(), doubt, unit_guessed: false, is_list: true }
     }
 }
 

@@ -115,6 +115,7 @@ pub(crate) fn planned(
         .notes()
         .into_iter()
         .chain(placed.notes.iter().cloned())
+        .chain(schedule.notes.iter().cloned())
         .chain(driving.remarks(&schedule.plan))
         .collect();
     notes.iter().for_each(|n| task.say(&format!("note: {n}")));

@@ -120,6 +120,8 @@ pub struct Placed {
     pub align: Option<AlignFigures>,
     /// What of it is left out, where it is to keep out of something.
     pub left_out: Option<LeftOut>,
+    /// Areas that are kept dark: closed paths.
+    pub kept_dark: Vec<Path>,
     /// The places that the drawing marks in its order, where it does that.
     pub points: Vec<Place>,
     /// What shows where it will be, before it is drawn.
@@ -150,6 +152,7 @@ impl Placed {
             target_from_sheet,
             align: None,
             left_out: None,
+            kept_dark: Vec::new(),
             points: Vec::new(),
             frame: None,
             notes: Vec::new(),
@@ -162,6 +165,15 @@ impl Placed {
     #[must_use]
     pub fn centre(&self) -> Point {
         self.corners_m[0].midpoint(self.corners_m[2])
+    }
+
+    /// Where on the target a place of the sheet lies; `None` of one beyond the horizon of the wall.
+    #[must_use]
+    pub fn on_target(&self, at: Point) -> Option<Point> {
+        match &self.bent {
+            Some(map) => map.apply(at),
+            None => Some(self.target_from_sheet * at),
+        }
     }
 
     /// The picture as its marks bend it, and from its pixels to the target; `None` of one that lies by `target_from_sheet`.
@@ -258,6 +270,7 @@ pub fn place(sketch: &Sketch, placing: &Placing) -> Result<Placed, Failure> {
         placed.placed.drawing = drawing;
         placed.placed.left_out = Some(left_out);
     }
+    placed.placed.kept_dark = areas;
     placed.placed.frame = placing.frame.map(|frame| dark.cut(&frame.of(&placed.placed.drawing)).0);
     Ok(placed.placed)
 }

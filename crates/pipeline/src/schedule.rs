@@ -1,11 +1,11 @@
 //! Strokes on the target to a plan: order, then time.
 
-use tracelight_sim::first_standing;
+use tracelight_sim::{Standing, first_standing};
 use tracelight_stroke::{
     Drawing, OrderOptions, Ordered, Point, Travel, order, order_by_layer, reading_order,
 };
-use tracelight_task::Failure;
-use tracelight_trajectory::{Plan, TravelTime, plan};
+use tracelight_task::{Failure, counted};
+use tracelight_trajectory::{LitSpeed, Plan, TravelTime, plan, plan_waiting};
 
 use crate::driving::{Driving, REACHED};
 use crate::hopeless;
@@ -13,6 +13,7 @@ use crate::ordering::{OrderBy, Sequence};
 use crate::placed::Placed;
 use crate::reach::check_reach;
 use crate::refused::refused;
+use crate::spread::{Spread, spread};
 
 /// A drawing in order, and in time.
 #[derive(Clone, Debug)]
@@ -21,7 +22,12 @@ pub struct Schedule {
     pub ordered: Ordered,
     /// When what of them is drawn.
     pub plan: Plan,
+    /// What the user should know of it: one sentence each.
+    pub notes: Vec<String>,
 }
+
+/// Shares of what a plan may use that light is spread by, one after the other: what comes of it is timed a little differently.
+const SHARES: [f64; 3] = [0.97, 0.8, 0.6];
 
 /// Orders and times a drawing. Every stroke must be in reach before any work goes into its order.
 ///
@@ -34,7 +40,8 @@ pub fn schedule(placed: &Placed, driving: &Driving) -> Result<Schedule, Failure>
         // in the order that they have; no speed is reached on lines that short
         return schedule_rest(placed.drawing.clone(), driving);
     }
-    let schedule = timed(ordered(placed, driving), driving)?;
+    let may_put_off = driving.order.sequence == Sequence::Free;
+    let schedule = timed(ordered(placed, driving), may_put_off, driving)?;
     check_speed(&schedule.plan, driving)?;
     Ok(schedule)
 }
@@ -45,13 +52,56 @@ pub fn schedule(placed: &Placed, driving: &Driving) -> Result<Schedule, Failure>
 /// As of [`schedule`], but that no speed is too fast for it: its longest stroke may be drawn.
 pub fn schedule_rest(drawing: Drawing, driving: &Driving) -> Result<Schedule, Failure> {
     let cost = TravelTime::new(&driving.machine, &driving.request);
-    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), driving)
+    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), false, driving)
 }
 
-fn timed(ordered: Ordered, driving: &Driving) -> Result<Schedule, Failure> {
+/// Times strokes. Where the light would stand it is spread in time, if that is enough.
+fn timed(ordered: Ordered, may_put_off: bool, driving: &Driving) -> Result<Schedule, Failure> {
     let plan = plan(&ordered.drawing, &driving.machine, &driving.request).map_err(refused)?;
-    check_standing(&plan, driving)?;
-    Ok(Schedule { ordered, plan })
+    let Some(stands) = first_standing(&driving.rig, &plan) else {
+        return Ok(Schedule { ordered, plan, notes: Vec::new() });
+    };
+    // what passes all its strokes at speed begins none of them from rest
+    let may_rest = driving.request.lit_speed != LitSpeed::Exact;
+    for share in SHARES {
+        let Some(Spread { drawing, waits, cut, parts }) =
+            spread((&ordered.drawing, &plan), &driving.rig, share, may_put_off)
+        else {
+            break;
+        };
+        if !waits.is_empty() && !may_rest {
+            break;
+        }
+        let spread = plan_waiting(&drawing, &waits, &driving.machine, &driving.request).map_err(refused)?;
+        if first_standing(&driving.rig, &spread).is_some() {
+            continue;
+        }
+        let cost = TravelTime::new(&driving.machine, &driving.request);
+        let notes = vec![spread_words(
+            (cut, parts),
+            waits.iter().map(|wait| wait.time_s).sum(),
+            (spread.duration_s() - plan.duration_s()).max(0.0),
+        )];
+        let ordered = Ordered {
+            lower_bound: ordered.lower_bound,
+            ..Ordered::as_it_is(drawing, start_of(driving), &cost)
+        };
+        return Ok(Schedule { ordered, plan: spread, notes });
+    }
+    Err(standing_light(&stands, driving))
+}
+
+/// Words for light that was spread, and what that takes.
+fn spread_words((cut, parts): (usize, usize), dark_s: f64, longer_s: f64) -> String {
+    let cuts = match cut {
+        0 => String::new(),
+        _ => format!(", {} in {parts} parts", counted(cut, "stroke")),
+    };
+    let dark =
+        if dark_s > 0.0 { format!(", and it is dark for {dark_s:.1} s in between") } else { String::new() };
+    format!(
+        "so that the light stands nowhere for too long, strokes that lie close together are drawn at different times{cuts}{dark}: {longer_s:.1} s more in all"
+    )
 }
 
 /// Where the beam falls at rest.
@@ -101,7 +151,10 @@ pub fn check_speed(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
 /// # Errors
 /// `standing-light`.
 pub fn check_standing(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
-    let Some(stands) = first_standing(&driving.rig, plan) else { return Ok(()) };
+    first_standing(&driving.rig, plan).map_or(Ok(()), |stands| Err(standing_light(&stands, driving)))
+}
+
+fn standing_light(stands: &Standing, driving: &Driving) -> Failure {
     let stroke = stands.stroke.map_or_else(String::new, |stroke| format!(" of stroke {}", stroke + 1));
     let light = &driving.rig.light;
     let message = format!(
@@ -116,5 +169,5 @@ pub fn check_standing(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
         1e3 * light.power_w,
         light.standing_s,
     );
-    Err(Failure::failed("standing-light", message))
+    Failure::failed("standing-light", message)
 }

@@ -57,6 +57,11 @@ impl Straight {
         self.from_picture.apply(pixel)
     }
 
+    /// Where in the picture a place of the sheet is, px.
+    pub(crate) fn in_picture(&self, at: Point) -> Option<Point> {
+        self.to_picture.apply(at)
+    }
+
     /// Strokes of the picture, on the sheet.
     #[must_use]
     pub fn drawing(&self, drawing: &Drawing) -> Drawing {

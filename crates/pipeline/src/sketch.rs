@@ -24,6 +24,8 @@ pub struct Sketch {
     pub true_width_m: Option<f64>,
     /// In which coordinates people say where a place of the sheet is.
     pub coordinates: Coordinates,
+    /// Nobody says what its file's unit is: it was taken for the millimetre.
+    pub unit_guessed: bool,
     /// Closed paths that light keeps out of.
     pub no_go: Drawing,
     /// Points and places of blocks that the file has.
@@ -55,6 +57,14 @@ impl Sketch {
         match self.paper.as_ref().and_then(|paper| paper.straight.as_ref()) {
             Some(straight) => straight.on_sheet(pixel),
             None => Some(pixel),
+        }
+    }
+
+    /// Where in the picture a place of the sheet is, px.
+    pub(crate) fn in_photograph(&self, at: Point) -> Option<Point> {
+        match self.paper.as_ref().and_then(|paper| paper.straight.as_ref()) {
+            Some(straight) => straight.in_picture(at),
+            None => Some(at),
         }
     }
 
@@ -223,8 +233,9 @@ pub fn sketch_at(
 }
 
 /// Strokes as they are.
-fn taken(Reading { sheet, remarks, .. }: Reading) -> Sketch {
+fn taken(Reading { sheet, remarks, unit_guessed, .. }: Reading) -> Sketch {
     Sketch {
+        unit_guessed,
         size: (sheet.width, sheet.height),
         true_width_m: sheet.metres_per_unit.map(|m| m * sheet.width),
         drawing: sheet.drawing,
@@ -266,6 +277,7 @@ fn traced(
     Ok(Sketch {
         size,
         true_width_m,
+        unit_guessed: false,
         coordinates: Coordinates::Page { unit_m: true_width_m.map(|m| m / size.0) },
         no_go: Drawing::default(),
         places: Vec::new(),

@@ -34,5 +34,5 @@ pub fn told_places(places: &[Vec2], placing: &mut Placing) -> Source {
         coordinates: Coordinates::Page { unit_m: Some(1.0) },
         places: told.iter().map(place).collect(),
     };
-    Source::Strokes(Reading { sheet, remarks, doubt: None, is_list: true })
+    Source::Strokes(Reading { sheet, remarks, doubt: None, unit_guessed: false, is_list: true })
 }

@@ -2,13 +2,17 @@
 
 use std::fmt::Write;
 
-use tracelight_pipeline::{Placed, Schedule, Standing};
+use tracelight_pipeline::{Placed, Schedule, SheetFigures, Standing};
 use tracelight_rig::TICK_F64_S;
+use tracelight_stroke::Path;
 use tracelight_task::counted;
 use tracelight_trajectory::Plan;
 
 use crate::sequence::sequence;
 use crate::summary::{PlanFigures, StrokeFigures};
+
+/// Outlines for display stay this close to their areas, m.
+const OUTLINE_M: f64 = 1e-3;
 
 /// A plan in words: two lines. `shortest` where the shortest way was looked for.
 #[must_use]
@@ -34,7 +38,7 @@ pub fn plan_words(schedule: &Schedule, shortest: bool) -> String {
 /// A plan as `plan --json` has it, with the time that its stages took.
 #[must_use]
 pub fn plan_json(
-    placed: &Placed,
+    (placed, sheet): (&Placed, Option<&SheetFigures>),
     standing: &Standing,
     schedule: &Schedule,
     timing: &serde_json::Value,
@@ -49,7 +53,8 @@ pub fn plan_json(
         },
         "head": standing,
         "align": placed.align,
-        "no_go": placed.left_out,
+        "sheet": sheet,
+        "no_go": no_go_json(placed),
         "strokes": StrokeFigures::of(&ordered.drawing, plan),
         "plan": PlanFigures::of(plan),
         "order": {
@@ -63,6 +68,18 @@ pub fn plan_json(
         "timing_ms": timing,
     })
     .to_string()
+}
+
+/// What is kept dark, and what is left out for that; null where nothing is.
+fn no_go_json(placed: &Placed) -> serde_json::Value {
+    let outline =
+        |path: &Path| -> Vec<[f64; 2]> { path.flatten(OUTLINE_M).iter().map(|p| [p.x, p.y]).collect() };
+    let mut json = serde_json::json!(placed.left_out);
+    if let Some(told) = json.as_object_mut() {
+        let outlines: Vec<Vec<[f64; 2]>> = placed.kept_dark.iter().map(outline).collect();
+        told.insert("outlines_m".to_owned(), outlines.into());
+    }
+    json
 }
 
 /// A limit's name as a key.

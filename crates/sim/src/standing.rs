@@ -11,8 +11,8 @@ use crate::config::RigConfig;
 
 /// Share of the budget that a plan may use: a head that follows it comes back to where it was pushed off, and starts slowly there.
 const PLANNED_SHARE: f64 = 0.9;
-/// What is told of as one place: half the diagonal of the budget's squares, in radii.
-const ABOUT_RADII: f64 = 2.9;
+/// What is told of as one place: the diagonal of the budget's squares, in radii, as far as light may be from some of it that is charged with it.
+const ABOUT_RADII: f64 = 5.8;
 
 /// Light that would stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,6 +113,40 @@ struct Moment {
     angle_rad: PanTilt<f32>,
     rate_rad_s: PanTilt<f32>,
     gate: bool,
+}
+
+/// A head's light, looked after along a plan that is still in the making.
+#[derive(Clone, Debug)]
+pub struct LightAhead {
+    config: Config,
+    budget: LightBudget,
+}
+
+impl LightAhead {
+    /// Of a head that lit nothing yet, with that share of what a plan may use.
+    #[must_use]
+    pub fn new(rig: &RigConfig, share: f64) -> Self {
+        let config = planned_config(rig);
+        let standing_ticks = (share * f64::from(config.standing_ticks)) as u32;
+        Self { config: Config { standing_ticks, ..config }, budget: LightBudget::new() }
+    }
+
+    /// Goes along ticks of a plan; the first at which the light would stand, where it stays.
+    pub fn pass(&mut self, points: &[PlanPoint]) -> Option<usize> {
+        points.iter().position(|point| {
+            let angle_rad = point.joints.map(|joint| joint.position_rad as f32);
+            let rate_rad_s = point.joints.map(|joint| joint.velocity_rad_s as f32);
+            self.budget.tick(&self.config, Some(angle_rad), point.lit, None);
+            point.lit && self.budget.is_spent(&self.config, Some((angle_rad, rate_rad_s)))
+        })
+    }
+
+    /// Lets dark ticks pass.
+    pub fn wait(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.budget.tick(&self.config, Some(PanTilt::default()), false, None);
+        }
+    }
 }
 
 /// The ticks of segments that follow each other without a gap.

@@ -9,7 +9,7 @@ use crate::machine::Machine;
 use crate::mark::Marked;
 use crate::motion::JointMotion;
 use crate::plan::{Plan, PlanPoint, Tightest, check_duration};
-use crate::request::{End, LitSpeed, PlanRequest};
+use crate::request::{End, LitSpeed, PlanRequest, Wait};
 use crate::retime::steady_speed;
 use crate::tour::leg::TourLeg;
 use crate::tour::run::Run;
@@ -40,11 +40,33 @@ pub fn plan_from(
     request: &PlanRequest,
     home_rad: PanTilt<f64>,
 ) -> Result<Plan, PlanError> {
+    timed((drawing, &[]), machine, request, home_rad)
+}
+
+/// Times a drawing like [`plan`], resting in the dark before some of its strokes: these begin from rest.
+///
+/// # Errors
+/// As of [`plan`]; at one speed throughout, where no stroke begins from rest, there is no plan with such rests.
+pub fn plan_waiting(
+    drawing: &Drawing,
+    waits: &[Wait],
+    machine: &Machine,
+    request: &PlanRequest,
+) -> Result<Plan, PlanError> {
+    timed((drawing, waits), machine, request, PanTilt::default())
+}
+
+fn timed(
+    (drawing, waits): (&Drawing, &[Wait]),
+    machine: &Machine,
+    request: &PlanRequest,
+    home_rad: PanTilt<f64>,
+) -> Result<Plan, PlanError> {
     check_length(drawing, request)?;
     let request = &request.within_jerk(machine);
     let (mut request, mut tightest) = at_one_speed(drawing, machine, request)?;
     loop {
-        let mut plan = at_speed(drawing, machine, &request, home_rad)?;
+        let mut plan = at_speed((drawing, waits), machine, &request, home_rad)?;
         plan.set_speed_m_s = request.speed_m_s;
         let uneven = if request.lit_speed == LitSpeed::Exact { slowest_place(machine, &plan) } else { None };
         let Some(place) = uneven.filter(|_| request.speed_m_s > SLOWEST_M_S) else {
@@ -59,12 +81,12 @@ pub fn plan_from(
 
 /// Times a drawing at the speed asked for.
 fn at_speed(
-    drawing: &Drawing,
+    (drawing, waits): (&Drawing, &[Wait]),
     machine: &Machine,
     request: &PlanRequest,
     home: PanTilt<f64>,
 ) -> Result<Plan, PlanError> {
-    let mut tour = Tour::new(drawing, machine, request, home)?;
+    let mut tour = Tour::new((drawing, waits), machine, request, home)?;
     let runs = tour.settle().map_err(|why| match why {
         NoTour::Plan(error) => error,
         NoTour::NoWay(leg) => PlanError::NoWayAtSpeed {
@@ -203,7 +225,7 @@ impl<'a> Draft<'a> {
         self.go(way);
         if ends[1] == End::Rest {
             let spot = leg.leg.at(0.0).point;
-            light_up(&mut self.plan.points, self.request.lift_s(self.machine), spot, leg.stroke);
+            light_up(&mut self.plan.points, self.request.lift_s(self.machine) + leg.wait_s, spot, leg.stroke);
         }
     }
 

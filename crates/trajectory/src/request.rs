@@ -5,6 +5,15 @@ use tracelight_rig::TICK_F64_S;
 use crate::machine::Machine;
 use crate::profile::Shape;
 
+/// A dark rest before a stroke, beside the one in which the head settles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wait {
+    /// Number of the stroke, from 0.
+    pub stroke: usize,
+    /// How long, s.
+    pub time_s: f64,
+}
+
 /// How lit strokes are run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LitSpeed {

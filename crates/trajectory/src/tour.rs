@@ -18,7 +18,7 @@ use crate::machine::Machine;
 use crate::mark::Marked;
 use crate::motion::JointMotion;
 use crate::plan::check_duration;
-use crate::request::{End, PlanRequest};
+use crate::request::{End, PlanRequest, Wait};
 use leg::TourLeg;
 use link::{Excess, Link, Sides};
 use run::Run;
@@ -46,7 +46,7 @@ pub(crate) enum NoTour {
 impl<'a> Tour<'a> {
     /// With estimates of all there is to choose from.
     pub(crate) fn new(
-        drawing: &Drawing,
+        (drawing, waits): (&Drawing, &[Wait]),
         machine: &'a Machine,
         request: &'a PlanRequest,
         home: PanTilt<f64>,
@@ -55,7 +55,12 @@ impl<'a> Tour<'a> {
         let mut at = home.map(JointMotion::at_rest);
         for (stroke, drawn) in drawing.strokes.iter().enumerate() {
             for leg in Corners::of(machine, request).legs(&drawn.path) {
-                let leg = TourLeg::new(leg, stroke, machine, request, at, legs.is_empty())?;
+                let mut leg = TourLeg::new(leg, stroke, machine, request, at, legs.is_empty())?;
+                let is_first = legs.last().is_none_or(|before| before.stroke != stroke);
+                waits
+                    .iter()
+                    .filter(|wait| is_first && wait.stroke == stroke)
+                    .for_each(|wait| leg.wait(wait.time_s));
                 at = leg.ends[End::Rest as usize].unwrap_or(at);
                 legs.push(leg);
             }

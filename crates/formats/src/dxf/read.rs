@@ -72,6 +72,7 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
         sheet: size.sheet,
         remarks: before.chain(skipped.remarks()).chain(lettered).collect(),
         doubt: size.doubt,
+        unit_guessed: unit == Unit::Guessed,
         is_list: false,
     })
 }

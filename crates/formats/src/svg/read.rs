@@ -97,7 +97,7 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     let drawing = Drawing { strokes: seen.strokes };
     let coordinates = Coordinates::Page { unit_m };
     let sheet = Sheet { width, height, metres_per_unit, drawing, coordinates, places: Vec::new() };
-    Ok(Reading { doubt: sheet.doubt(), sheet, remarks: said, is_list: false })
+    Ok(Reading { doubt: sheet.doubt(), sheet, remarks: said, unit_guessed: false, is_list: false })
 }
 
 fn document(text: &str) -> Result<Document<'_>, usvg::roxmltree::Error> {

@@ -172,6 +172,7 @@ fn done_for(arguments: &[String], seat: Option<&dyn Seat>, task: Task<'_>) -> Re
         Command::Lab(args) => lab::run(&args, answer_to, task.stop),
         Command::Runs(args) => runs::run(&args),
         Command::Compare(args) => runs::run_compare(&args),
+        Command::Rigs(args) => rigs::run(&args),
         Command::Explain(args) => explain::run(&args),
         _ => Err(Failure::usage("usage", "the studio does not do this command")),
     }

@@ -2,7 +2,7 @@ use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use tracelight_files as files;
-use tracelight_pipeline::{Driving, OrderBy, OrderRequest, Standing, place, schedule, sketch};
+use tracelight_pipeline::{Driving, OrderBy, OrderRequest, SheetFigures, Standing, place, schedule, sketch};
 use tracelight_report::{
     BoardAxis, ColourBy, HeadGcode, drawing, head_gcode, plan_csv, plan_json, plan_words, preview,
 };
@@ -202,6 +202,7 @@ pub(crate) fn run(args: &PlanArgs, task: Task<'_>) -> Result<Answer, Failure> {
         .notes()
         .iter()
         .chain(&placed.notes)
+        .chain(&schedule.notes)
         .chain(&driving.remarks(&schedule.plan))
         .for_each(|n| task.say(&format!("note: {n}")));
     if let Some(path) = &args.out {
@@ -216,7 +217,10 @@ pub(crate) fn run(args: &PlanArgs, task: Task<'_>) -> Result<Answer, Failure> {
     let shortest = args.order_by == OrderByName::Distance || driving.request.lit_speed == LitSpeed::Stops;
     let standing = Standing::of(&placed.drawing, &driving);
     let text = format!("{}\nhead: {}", plan_words(&schedule, shortest), standing.words());
-    Ok(Answer::new(text, plan_json(&placed, &standing, &schedule, &timing)))
+    Ok(Answer::new(
+        text,
+        plan_json((&placed, SheetFigures::of(&sketch, &placed).as_ref()), &standing, &schedule, &timing),
+    ))
 }
 
 /// Whether what the flags ask for goes together, before any work.

@@ -23,7 +23,7 @@ fn on_sheet(x: f64, y: f64) -> (f64, f64) {
 }
 
 /// An A4 sheet with a ring of 60 mm radius, drawn by a pen so wide, m, on a dark table.
-fn photograph(name: &str, pen: f64) -> PathBuf {
+pub(crate) fn photograph(name: &str, pen: f64) -> PathBuf {
     let path = folder(name).join("photo.png");
     let level = |x: u32, y: u32| {
         // the mean of nine places in the pixel

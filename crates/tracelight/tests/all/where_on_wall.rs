@@ -189,6 +189,59 @@ fn no_light_falls_on_what_is_no_go() {
     assert!(status == 1 && message.contains("all of the drawing"), "{message}");
 }
 
+/// A corner of what `plan` tells of a sheet, as a mark that belongs where it lies already.
+fn told_mark(sheet: &Value, corner: usize) -> String {
+    let (at, on) = (&sheet["corners"][corner], &sheet["target_m"][corner]);
+    let unit = sheet["unit"].as_str().unwrap();
+    format!("{}{unit},{}{unit}={}m,{}m", at[0], at[1], on[0], on[1])
+}
+
+#[test]
+fn places_of_a_sheet_are_told_as_marks_name_them() {
+    let folder = folder("where-sheet");
+    let dxf = plan_file(&folder);
+    // of a sheet at a slant its corners are named in the photograph
+    let photo = crate::paper::photograph("where-photo", 1.6e-3);
+    let svg = "examples/sign.svg";
+    let house = "examples/house.png";
+    for (file, flags) in [
+        (dxf.as_str(), &["--rotate", "20deg", "--offset", "0.3m,-0.2m", "--distance", "3m"][..]),
+        (photo.to_str().unwrap(), &["--width", "0.5m", "--rotate", "-10deg"]),
+        (svg, &["--width", "0.4m", "--flip"]),
+        (house, &["--width", "0.4m", "--from", "top-left", "--origin", "-0.3m,0.3m"]),
+    ] {
+        let told = plan(&[&[file], flags].concat());
+        let sheet = &told["sheet"];
+        let marks: Vec<String> = (0..3).map(|corner| told_mark(sheet, corner)).collect();
+        let flips = flags.contains(&"--flip").then_some("--flip");
+        let distance = flags.contains(&"--distance").then_some(["--distance", "3m"]);
+        let mut again: Vec<&str> = vec![file];
+        again.extend(flips);
+        again.extend(distance.iter().flatten());
+        again.extend(marks.iter().flat_map(|mark| ["--align", mark]));
+        let marked = plan(&again);
+        for corner in 0..4 {
+            for axis in 0..2 {
+                let wanted = sheet["target_m"][corner][axis].as_f64().unwrap();
+                near(&marked["sheet"]["target_m"][corner][axis], wanted, 1e-5);
+            }
+        }
+        near(&marked["align"]["rms_mm"], 0.0, 1e-3);
+    }
+    assert_eq!(plan(&[&dxf])["sheet"]["unit_guessed"], false);
+    assert_eq!(plan(&[&dxf])["sheet"]["picture_px"], Value::Null);
+    let nameless = folder.join("nameless.dxf");
+    std::fs::write(&nameless, PLAN.replace("9\n$INSUNITS\n70\n4\n", "")).unwrap();
+    let nameless = nameless.to_str().unwrap();
+    assert_eq!(plan(&[nameless])["sheet"]["unit_guessed"], true);
+    assert_eq!(plan(&[nameless, "--unit", "mm"])["sheet"]["unit_guessed"], false);
+    // a door that nobody draws, and where it is
+    let dark = plan(&[&dxf, "--no-go", "DOOR"]);
+    let outline = dark["no_go"]["outlines_m"][0].as_array().unwrap();
+    assert_eq!(outline.len(), 5, "{outline:?}");
+    assert!(outline.iter().all(|at| (0.49..0.71).contains(&at[0].as_f64().unwrap())), "{outline:?}");
+}
+
 #[test]
 fn who_says_how_far_the_head_stands_is_told_and_from_where_it_is_best() {
     let folder = folder("where-distance");

@@ -20,6 +20,8 @@ pub(crate) struct TourLeg {
     pub(crate) stroke: usize,
     /// Whether the leg begins where the previous one ends. At rest there, the light may stay on.
     pub(crate) joined: bool,
+    /// The dark rest before it that is asked for, s.
+    pub(crate) wait_s: f64,
     /// Duration of the leg for each run, s; infinite if infeasible.
     pub(super) drawn_s: [f64; Run::COUNT],
     /// Ticks of the runs that were planned so far.
@@ -61,7 +63,17 @@ impl TourLeg {
         let joined = !is_first
             && starts[0]
                 .is_some_and(|start| touches(before.map(|j| j.position_rad), start.map(|j| j.position_rad)));
-        Ok(Self { leg, stroke, joined, drawn_s, marked: Default::default(), starts, ends })
+        Ok(Self { leg, stroke, joined, wait_s: 0.0, drawn_s, marked: Default::default(), starts, ends })
+    }
+
+    /// Asks for a dark rest before it, s: it begins from rest, also where the one before ends.
+    pub(super) fn wait(&mut self, time_s: f64) {
+        self.wait_s = time_s;
+        self.joined = false;
+        self.starts[End::Moving as usize] = None;
+        for run in Run::ALL.into_iter().filter(|run| run.start == End::Moving) {
+            self.drawn_s[run.index()] = f64::INFINITY;
+        }
     }
 
     /// Returns the planned ticks of a run, if there are any.

@@ -143,7 +143,10 @@ impl<'a> Sides<'a> {
 
     /// The rest before a leg that begins at rest, s.
     fn lift_s(&self, after: End) -> f64 {
-        if after == End::Rest && self.after.is_some() { self.request.lift_s(self.machine) } else { 0.0 }
+        match self.after {
+            Some(leg) if after == End::Rest => self.request.lift_s(self.machine) + leg.wait_s,
+            _ => 0.0,
+        }
     }
 
     /// How the joints move at both, if the legs there are timed.
