@@ -83,6 +83,66 @@ const place = async () => {
   await page.close()
 }
 
+// By marks, areas that are never lit, corners of a sheet, a unit that nobody told, in inches.
+const onWall = async () => {
+  const page = await opened(1280, 800)
+  const box = await page.locator('#wall').boundingBox()
+  const at = (x, y) => [box.x + box.width * x, box.y + box.height * y]
+  const planned = async act => {
+    const [answer] = await Promise.all([page.waitForResponse(response => /plans$/.test(response.url()) && response.ok()), act()])
+    const { plan } = await answer.json()
+    await page.waitForFunction(() => !document.body.classList.contains('waits'))
+    return plan
+  }
+  await page.click('#marks summary')
+  const mark = async (x, y) => {
+    await page.click('#add-mark')
+    return planned(() => page.mouse.click(...at(x, y)))
+  }
+  const type = (n, text) => planned(async () => {
+    await page.locator('#mark-list input').nth(n).fill(text)
+    await page.keyboard.press('Enter')
+  })
+  const { target: first } = await mark(0.3, 0.7)
+  const lay = (await page.locator('#mark-list input').first().inputValue()).split(',').map(parseFloat)
+  const { target: moved } = await type(0, '0m,0m')
+  const off = moved.corners_m[0].map((m, n) => 1000 * (m - first.corners_m[0][n]) + lay[n])
+  check(Math.hypot(...off) < 0.2, `a mark puts it ${off} mm elsewhere`)
+  await mark(0.7, 0.7)
+  const far = (await page.locator('#mark-list input').nth(1).inputValue()).split(',').map(parseFloat)
+  const { target: larger, align } = await type(1, `${2 * far[0]}mm,${2 * far[1]}mm`)
+  check(align.by === 'similarity' && Math.abs(larger.width_m / first.width_m - 2) < 2e-3, `two marks make it ${larger.width_m} m wide`)
+  await page.click('#dark summary')
+  await page.click('#add-dark')
+  await page.keyboard.press('Escape')
+  check(await page.locator('#pointing').isHidden(), 'Esc does not end what is shown')
+  await page.click('#add-dark')
+  const { no_go } = await planned(async () => {
+    await page.mouse.move(...at(0.45, 0.4))
+    await page.mouse.down()
+    await page.mouse.move(...at(0.6, 0.6), { steps: 4 })
+    await page.mouse.up()
+  })
+  check(no_go.outlines_m[0].length === 5 && no_go.length_m > 0, 'an area that was drawn is not kept dark')
+  await page.click('#units')
+  check(/ in/.test(await page.textContent('#size')) && / ft/.test(await page.textContent('#length')), 'no inches')
+  await page.click('#units')
+  await page.goto(address + '#picture=star.png')
+  await page.reload()
+  await page.waitForFunction(() => document.getElementById('count').textContent !== '–')
+  await page.getByText('Sheet of paper').click()
+  await page.click('#show-corners')
+  for (const corner of [[0.4, 0.2], [0.7, 0.25], [0.7, 0.8]]) await page.mouse.click(...at(...corner))
+  await planned(() => page.mouse.click(...at(0.35, 0.75)))
+  check((await page.locator('[name=straighten]').inputValue()).split(' ').length === 4, 'four corners are not told')
+  const line = '0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n10\n0\n20\n0\n11\n60\n21\n40\n0\nENDSEC\n0\nEOF\n'
+  await page.setInputFiles('#file', { name: 'line.dxf', mimeType: 'image/vnd.dxf', buffer: Buffer.from(line) })
+  await until(page, 'nobody asks for a unit', () => /names no unit/.test(document.getElementById('unit').textContent))
+  const { target: inches } = await planned(() => page.click('#unit button:has-text("in")'))
+  check(Math.abs(inches.width_m - 60 * 0.0254) < 1e-6 && (await page.locator('#unit').isHidden()), `in inches it is ${inches.width_m} m wide`)
+  await page.context().close()
+}
+
 const state = page => page.textContent('#state')
 const lamp = page => page.textContent('#lamp')
 const hold = async (page, time) => {
@@ -382,12 +442,47 @@ const lab = async () => {
   await page.context().close()
 }
 
+// A rig file: made of a preset, wrong at a line, mended, kept with its comments, drawn with, deleted and had back.
+const rigs = async () => {
+  const page = await opened(1280, 900)
+  await page.goto(address + '#rigs')
+  await until(page, 'no presets are listed', () => document.querySelectorAll('#rig-presets a').length > 3)
+  await page.fill('#rig-name', 'garage')
+  await page.click('#rig-few')
+  await until(page, 'no new rig file', () => document.getElementById('rig-title').textContent === 'garage.toml' && /base = "report"/.test(document.getElementById('rig-text').value))
+  const text = '# mine\nbase = "report"\n\n[laser]\npower = "heavy" # a pointer\n'
+  await page.fill('#rig-text', text)
+  await until(page, 'what is wrong is not shown at its line', () => document.querySelector('#rig-lines .wrong')?.textContent === '5')
+  await page.getByText('Go to line 5').click()
+  check((await page.evaluate(() => document.getElementById('rig-text').selectionStart)) === text.indexOf('"heavy"'), 'the caret is not where it is wrong')
+  await page.click('#rig-save')
+  await page.click('#rig-presets a >> nth=1')
+  await until(page, 'no preset is shown', () => document.getElementById('rig-text').readOnly)
+  await page.click('#rig-own a')
+  await until(page, 'what was written is lost', () => /heavy/.test(document.getElementById('rig-text').value))
+  const right = text.replace('heavy', '0.5mW')
+  await page.fill('#rig-text', right)
+  await until(page, 'what is right is called wrong', () => document.getElementById('rig-wrong').hidden)
+  await page.click('#rig-save')
+  await until(page, 'it is not kept', () => document.getElementById('rig-save').textContent === 'Saved')
+  const kept = await (await page.request.get(address + 'api/v1/rigs/garage.toml')).json()
+  check(kept.toml === right, 'it is not kept as it was written')
+  await page.click('#rig-use')
+  await until(page, 'nothing is planned with it', () => /--rig=.*garage\.toml/.test(document.getElementById('command').textContent))
+  check((await value(page, 'rig')) === 'garage.toml', 'the form does not say which head')
+  await page.goto(address + '#rigs=garage.toml')
+  await page.click('#rig-delete')
+  await page.click('#rig-wrong button')
+  await until(page, 'it is not had back', () => document.querySelectorAll('#rig-own a').length === 1)
+  await page.context().close()
+}
+
 const looks = async () => {
   for (const [width, height] of [[1280, 800], [820, 1100], [390, 844]]) {
     for (const theme of ['light', 'dark', 'room']) {
       const page = await opened(width, height)
       await page.evaluate(name => localStorage.setItem('theme', name), theme)
-      for (const view of ['', '#run', '#runs', '#compare=house,house-2', '#lab', '#lab=lesson-2', '#devices']) {
+      for (const view of ['', '#run', '#runs', '#compare=house,house-2', '#lab', '#lab=lesson-2', '#rigs=garage.toml', '#devices']) {
         await page.goto(address + view)
         await page.reload()
         await page.waitForTimeout(400)
@@ -405,11 +500,13 @@ const looks = async () => {
 
 const took = await firstMinute()
 await place()
+await onWall()
 const stopped = await attend()
 const dark = await lost()
 await steps()
 await history()
 await lab()
+await rigs()
 const far = await devices()
 if (process.argv[4]) await port(process.argv[4])
 await keys()

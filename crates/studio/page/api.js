@@ -2,12 +2,14 @@
 /** What the server is asked. */
 
 /**
- * @typedef {{ code: string, message: string, help?: string }} Failure what went wrong, as the program says it
+ * @typedef {{ code: string, message: string, help?: string, where?: { file: string, line: number, column: number } | null }} Failure what went wrong, as the program says it
  * @typedef {{ id: string, example: boolean, shows: boolean }} Picture
- * @typedef {Record<string, string | boolean>} Flags flags of the command line, with underscores
+ * @typedef {Record<string, string | boolean | string[]>} Flags flags of the command line, with underscores
  * @typedef {{ number: number, length_m: number, lit_from_s: number, lit_to_s: number }} Stroke
+ * @typedef {{ unit: 'px' | 'm', corners: [number, number][], target_m: [number, number][], picture_px: [number, number] | null, unit_guessed: boolean }} Sheet how places of the drawing are named, and where they lie
+ * @typedef {{ by: string, residual_mm: number[], rms_mm: number, worst: number }} Align
  * @typedef {{ target: { width_m: number, height_m: number, corners_m: [number, number][] }, strokes: { count: number, length_m: number }, plan: { duration_s: number },
- *   head: { spot_mm: number, best_distance_m: number, distance_m: number }, sequence: Stroke[] }} PlanFigures
+ *   head: { spot_mm: number, best_distance_m: number, distance_m: number }, sequence: Stroke[], sheet: Sheet | null, align: Align | null, no_go: { outlines_m: [number, number][][] } | null }} PlanFigures
  * @typedef {{ id: number, command: string, plan: PlanFigures, remarks: string[], points: string }} Plan
  * @typedef {{ id: number, run: string, picture: string, flags: Flags | null, stage: string, done: number, of: number, remarks: string[], over: boolean, live: boolean, answer: any, failure: Failure | null }} Job
  * @typedef {{ id: string, folder: string, begun: string, picture: string | null, flags: Flags | null, rig: string | null, mode: string, points: { count: number, done: number } | null, files: { name: string, bytes: number }[], width_m: number, height_m: number, strokes: number, duration_s: number | null,
@@ -15,6 +17,7 @@
  * @typedef {{ first: RunTold, second: RunTold, same_drawing: boolean, only_first_asked: string[], only_second_asked: string[], figures: { name: string, unit: string, digits: number, first: number | null, second: number | null, difference: number | null }[] }} Compared
  * @typedef {{ command: string, answer: any, words: string, svg: string, failure: Failure | null }} Experiment
  * @typedef {{ name: string, planned_as: string, at_port: boolean, real: boolean }} Head
+ * @typedef {{ name: string, own: boolean, description: string, problem: Failure | null }} Rig
  * @typedef {{ id: number, name: string, role: 'operator' | 'viewer', lines: number, seen_s: number }} Device
  * @typedef {{ role: 'operator' | 'viewer' | null, local: boolean, device: number, lan: { addresses: string[], fingerprint: string } | null, devices: Device[] | null, last: { picture: string, flags: Flags } | null }} Session
  * @typedef {{ role: string, links: string[], code_svg: string | null, fingerprint: string, holds_s: number }} Invitation
@@ -74,9 +77,15 @@ export const stop = () => post('/stop', {})
 export const runs = async () => (await json('/runs')).runs
 /** @param {string} first @param {string} second @returns {Promise<Compared>} */
 export const compare = (first, second) => json(`/compare?first=${encodeURIComponent(first)}&second=${encodeURIComponent(second)}`)
-/** Puts something into the trash; its name there. @param {'runs' | 'pictures'} kind @param {string} id @returns {Promise<string>} */
+/** @returns {Promise<Rig[]>} */
+export const rigs = async () => (await json('/rigs')).rigs
+/** What a rig file says. @param {string} name @returns {Promise<{ name: string, own: boolean, toml: string }>} */
+export const rig = (name) => json(`/rigs/${encodeURIComponent(name)}`)
+/** Keeps a rig file, or only looks whether it is one. @param {string} name @param {string} toml @param {boolean} only_check @returns {Promise<{ remarks: string[] }>} */
+export const writeRig = (name, toml, only_check) => json(`/rigs/${encodeURIComponent(name)}`, { method: 'PUT', headers: { 'content-type': 'application/json' }, body: JSON.stringify({ toml, only_check }) })
+/** Puts something into the trash; its name there. @param {'runs' | 'pictures' | 'rigs'} kind @param {string} id @returns {Promise<string>} */
 export const discard = async (kind, id) => (await json(`/${kind}/${encodeURIComponent(id)}`, { method: 'DELETE' })).in_trash
-/** @param {'runs' | 'pictures'} kind @param {string} name */
+/** @param {'runs' | 'pictures' | 'rigs'} kind @param {string} name */
 export const restore = (kind, name) => post(`/trash/${kind}/${encodeURIComponent(name)}`, {})
 /** @returns {Promise<Session>} */
 export const session = () => json('/session')

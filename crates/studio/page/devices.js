@@ -1,34 +1,11 @@
 // @ts-check
-/** Devices of the network: whether this one has joined, who else has, and how one is invited. */
+/** Devices of the network: which have joined, and how one is invited. */
 
 import * as api from './api.js'
 import { by, element } from './dom.js'
 
 /** How often the list is looked at while it is shown, ms. */
 const LOOK = 2000
-
-/** Joins by the invitation in the address, if there is one, and tells who this page is then. @returns {Promise<api.Session>} */
-export async function arrive() {
-  const invitation = new URLSearchParams(location.hash.slice(1)).get('join')
-  if (invitation) {
-    // what is used once is nobody's to see or to go back to
-    history.replaceState(null, '', location.pathname)
-    try {
-      await api.join(invitation, deviceName())
-    } catch (error) {
-      by('outside-why').textContent = error instanceof api.Refusal ? error.failure.message : String(error)
-    }
-  }
-  return api.session()
-}
-
-/** What a device calls itself, as far as its browser tells. */
-function deviceName() {
-  const agent = navigator.userAgent
-  const found = ['iPhone', 'iPad', 'Android', 'Windows', 'Macintosh', 'CrOS', 'Linux'].find((name) => agent.includes(name)) ?? 'device'
-  const browser = ['Firefox', 'Edg', 'Chrome', 'Safari'].find((name) => agent.includes(name))
-  return [found.replace('Macintosh', 'Mac').replace('CrOS', 'Chromebook'), browser?.replace('Edg', 'Edge')].filter(Boolean).join(', ')
-}
 
 export class Devices {
   /** @param {(error: unknown) => void} problem */

@@ -14,3 +14,16 @@ export function element(name, how = {}, ...children) {
   made.append(...children)
   return made
 }
+
+/** Makes something when it is first asked for; what fails is tried again. @template T @param {() => Promise<T>} make @returns {() => Promise<T>} */
+export function once(make) {
+  /** @type {Promise<T> | null} */
+  let made = null
+  return () => {
+    made ??= make().catch((error) => {
+      made = null
+      throw error
+    })
+    return made
+  }
+}

@@ -15,6 +15,8 @@ const GROUPS = [
       { flag: 'width', label: 'Width', hint: '24in, 60cm, 3m' },
       { flag: 'height', label: 'or height', hint: 'follows' },
       { flag: 'offset', label: 'Right, up', hint: '10cm,-5cm' },
+      { flag: 'from', label: 'Measured from', choices: [['', 'the middle'], ['bottom-left', 'left edge and floor'], ['bottom-right', 'right edge and floor'], ['top-left', 'left edge and top'], ['top-right', 'right edge and top']] },
+      { flag: 'origin', label: 'Where that corner is', hint: '-1.5m,-1.2m' },
       { flag: 'rotate', label: 'Turn', hint: '15deg' },
       { flag: 'distance', label: 'Head’s distance', hint: '3ft' },
       { flag: 'flip', label: 'Mirror', check: true },
@@ -31,6 +33,17 @@ const GROUPS = [
       { flag: 'layer', label: 'Only layer', hint: 'studs' },
       { flag: 'colour', label: 'Only colour', hint: 'red, #1f63c4' },
       { flag: 'unit', label: 'Unit of a DXF', choices: [['', 'as the file says'], ['mm', 'mm'], ['cm', 'cm'], ['m', 'm'], ['in', 'in'], ['ft', 'ft']] },
+    ],
+  },
+  {
+    title: 'Sheet of paper',
+    open: false,
+    fields: [
+      { flag: 'paper', label: 'Its size', choices: [['', 'not known'], ['a5', 'A5'], ['a4', 'A4'], ['a3', 'A3'], ['letter', 'Letter'], ['legal', 'Legal']] },
+      { flag: 'straighten', label: 'Its corners', hint: 'auto, off' },
+      { flag: 'whole', label: 'Trace beside it too', check: true },
+      { flag: 'sheets', label: 'Leave out edges of paper', check: true },
+      { flag: 'force', label: 'Also a photograph', check: true },
     ],
   },
   {
@@ -86,17 +99,36 @@ export class Fields {
       const value = input instanceof HTMLInputElement && field.check ? input.checked : input.value.trim()
       // one of both says the other
       const other = /** @type {Record<string, Flags>} */ ({ width: { height: '' }, height: { width: '' } })
-      changed({ ...(value ? other[field.flag] : {}), [field.flag]: value })
+      // where a corner is means nothing without one
+      const alone = /** @type {Flags} */ (field.flag === 'from' && !value ? { origin: '' } : {})
+      changed({ ...(value ? other[field.flag] : {}), ...alone, [field.flag]: value })
     })
     label.append(text, input)
     this.inputs.set(field.flag, input)
     return label
   }
 
+  /** The part of the form that a field is in. @param {string} flag */
+  part(flag) {
+    return /** @type {HTMLElement} */ (this.inputs.get(flag)?.closest('details'))
+  }
+
   /** Gives the choice that is none of a field's own another name. @param {string} flag @param {string} words */
   name(flag, words) {
     const first = /** @type {HTMLSelectElement} */ (this.inputs.get(flag)).options[0]
     if (first) first.text = words
+  }
+
+  /** Gives a field choices beside its own. @param {string} flag @param {[string, string][]} choices @param {Flags} flags what is asked for */
+  also(flag, choices, flags) {
+    const select = /** @type {HTMLSelectElement} */ (this.inputs.get(flag))
+    for (const option of [...select.options]) if (option.dataset.also) option.remove()
+    for (const [value, words] of choices) {
+      const option = new Option(words, value)
+      option.dataset.also = 'yes'
+      select.append(option)
+    }
+    select.value = String(flags[flag] ?? '')
   }
 
   /** Shows what is asked for. @param {Flags} flags */

@@ -36,3 +36,16 @@ export function themes(button, changed) {
   })
   take(kept('localStorage', 'theme'))
 }
+
+/** Lets a button change between centimetres and inches. @param {HTMLElement} button @param {(imperial: boolean) => void} changed */
+export function units(button, changed) {
+  const take = (/** @type {boolean} */ imperial) => {
+    button.textContent = imperial ? 'in' : 'cm'
+    button.title = imperial ? 'Lengths are in inches and feet: change to metres' : 'Lengths are in metres: change to inches'
+    button.setAttribute('aria-label', imperial ? 'in: inches and feet' : 'cm: metres')
+    keep('localStorage', 'units', imperial ? 'in' : 'm')
+    changed(imperial)
+  }
+  button.addEventListener('click', () => take(kept('localStorage', 'units') !== 'in'))
+  take(kept('localStorage', 'units') === 'in')
+}

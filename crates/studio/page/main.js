@@ -2,20 +2,25 @@
 /** The page: what is asked of whom, in which order. */
 
 import * as api from './api.js'
-import { by, element } from './dom.js'
+import { arrive } from './arrive.js'
+import { by, element, once } from './dom.js'
+import { Beneath } from './beneath.js'
+import { Corners } from './corners.js'
+import { Dark } from './dark.js'
 import { Fields, asLabelled } from './fields.js'
-import { showCompared } from './compare.js'
 import { HeadPad } from './head.js'
-import { Devices, arrive } from './devices.js'
-import { Lab } from './lab.js'
-import { keep, kept, themes } from './kept.js'
+import { figures, noFigures } from './figures.js'
+import { keep, kept, themes, units } from './kept.js'
+import { Marks } from './marks.js'
 import { Pictures } from './pictures.js'
+import { boxOf, flagsOf, planned } from './place.js'
 import { Runs, follow, showResult } from './runs.js'
 import { Run } from './run.js'
-import { Store } from './store.js'
+import { Store, essence } from './store.js'
 import { Timeline } from './timeline.js'
+import { askUnit } from './unit.js'
 import { NOWHERE, Wall } from './wall.js'
-import { degrees, length, offset, plain, time, typed } from './words.js'
+import { shown } from './words.js'
 
 /** How long a wish rests before it is planned, ms. */
 const REST = 150
@@ -25,7 +30,7 @@ const NUDGE_M = 1e-3
 const LOOK = 1000
 /** In how many seconds a drawing is played while it is traced. */
 const PLAYED_S = 6
-const VIEWS = ['place', 'run', 'runs', 'compare', 'lab', 'devices']
+const VIEWS = ['place', 'run', 'runs', 'compare', 'lab', 'rigs', 'devices']
 
 const page = crypto.randomUUID()
 const session = await arrive().catch(() => null)
@@ -49,17 +54,22 @@ const wall = new Wall(by('wall'), (box, done) => {
 })
 const timeline = new Timeline({ range: by('time'), play: by('play'), clock: by('clock'), rate: by('rate') }, (row) => wall.at(row))
 const fields = new Fields(by('fields'), (flags) => store.flags(flags))
-
-/** Where a box lies, as flags: what did not change stays as it was typed. @param {import('./wall.js').Box} box @returns {api.Flags} */
-function placed(box) {
-  const is = boxOf(store.asked.flags)
-  /** @type {api.Flags} */
-  const flags = {}
-  if (Math.hypot(box.x - is.x, box.y - is.y) > 5e-5) flags.offset = `${typed(box.x)},${typed(box.y)}`
-  if (Math.abs(box.width - is.width) > 5e-5) Object.assign(flags, { width: typed(box.width), height: '' })
-  if (Math.abs(box.turn - is.turn) > 1e-4) flags.rotate = `${plain((box.turn * 180) / Math.PI, 1)}deg`
-  return flags
+const beneath = new Beneath(by('beneath'), wall)
+const onWall = {
+  flags: () => store.asked.flags,
+  changed: (/** @type {api.Flags} */ flags) => store.flags(flags),
+  ask: (/** @type {string} */ words) => {
+    by('pointing').hidden = words === ''
+    by('pointing-words').textContent = words
+    if (words) by('wall').scrollIntoView({ block: 'nearest' })
+  },
 }
+const marks = new Marks(wall, onWall)
+const dark = new Dark(wall, onWall)
+new Corners(wall, onWall, () => plan?.plan.sheet ?? null)
+fields.part('width').after(by('marks'), by('dark'))
+fields.part('straighten').append(by('show-corners'))
+by('pointed').addEventListener('click', () => wall.cancel())
 
 /** What was asked for when this page was last left; of one that comes new, what was placed last, here or on another device. @returns {import('./store.js').Asked} */
 function earlier() {
@@ -67,23 +77,13 @@ function earlier() {
   return asked ? JSON.parse(asked) : (session?.last ?? { picture: 'house.png', flags: {} })
 }
 
-/** Where the planned drawing lies. @param {api.Plan} of @returns {import('./wall.js').Box} */
-function planned(of) {
-  const { corners_m: corners, width_m: width, height_m: height } = of.plan.target
-  const [x, y] = [0, 1].map((n) => corners.reduce((sum, corner) => sum + corner[n], 0) / 4)
-  const [up_x, up_y] = [corners[0][0] - corners[3][0], corners[0][1] - corners[3][1]]
-  return { x, y, turn: Math.atan2(-up_x, up_y), width, height }
+/** Where the drawing is to be by its flags. @param {api.Flags} flags @returns {import('./wall.js').Box} */
+function lies(flags) {
+  return plan ? boxOf(flags, planned(plan), planFlags) : NOWHERE
 }
 
-/** Where the drawing is to be by its flags: what the page cannot read lies where it was planned. @param {api.Flags} flags @returns {import('./wall.js').Box} */
-function boxOf(flags) {
-  const known = plan && JSON.stringify(flags) === JSON.stringify(planFlags)
-  const was = plan ? planned(plan) : NOWHERE
-  if (known) return was
-  const [x, y] = offset(String(flags.offset ?? '')) ?? [was.x, was.y]
-  const degree = degrees(String(flags.rotate ?? ''))
-  return { ...was, x, y, turn: degree === null ? was.turn : (degree * Math.PI) / 180 }
-}
+/** Where it was dragged, as flags. @param {import('./wall.js').Box} box */
+const placed = (box) => flagsOf(box, lies(store.asked.flags), store.asked.flags)
 
 const run = new Run(page, {
   asked: () => store.asked,
@@ -105,8 +105,18 @@ const run = new Run(page, {
 run.operates = operates
 const pictures = new Pictures({ choose, chosen: () => store.asked.picture, problem, operates })
 const pad = new HeadPad(problem)
-const lab = new Lab((error) => told('lab-problem', error))
-const devices = new Devices((error) => told('devices-problem', error))
+// what the first view does not need comes when somebody goes there
+const lab = once(async () => new (await import('./lab.js')).Lab((error) => told('lab-problem', error)))
+const rigs = once(async () => new (await import('./rigs.js')).Rigs({
+  problem: (error) => told('rigs-problem', error),
+  use: (rig) => {
+    store.flags({ rig: rig === 'report' ? '' : rig })
+    location.hash = '#place'
+  },
+  changed: ownRigs,
+  operates,
+}))
+const devices = once(async () => new (await import('./devices.js')).Devices((error) => told('devices-problem', error)))
 const runs = new Runs({
   again: (of) => take_up(of, '#place'),
   rest: (of) => {
@@ -157,15 +167,24 @@ function planSoon(rest = REST) {
 function nothing() {
   plan = null
   wall.show(null, NOWHERE)
+  details(null)
   timeline.of(0, 0)
-  for (const id of ['size', 'count', 'length', 'duration', 'spot']) by(id).textContent = '–'
-  by('command').textContent = ''
-  by('strokes').replaceChildren()
+  noFigures()
   by('remarks').hidden = true
+}
+
+/** Shows what lies on the wall beside the strokes. @param {api.PlanFigures | null} of */
+function details(of) {
+  marks.show(of)
+  dark.show(of)
+  beneath.show(store.asked.picture, of?.sheet ?? null)
+  askUnit(of?.sheet ?? null, store.asked.flags, false, (flags) => store.flags(flags))
 }
 
 /** What was wished for cannot be planned. @param {unknown} error */
 function refused(error) {
+  const is_sizeless = error instanceof api.Refusal && error.failure.code === 'size-not-meant'
+  if (is_sizeless) askUnit(null, store.asked.flags, true, (flags) => store.flags(flags))
   if (plan === null) by('hint').textContent = 'Nothing to show.'
   problem(error)
 }
@@ -179,24 +198,12 @@ function show(made, points, flags) {
   document.body.classList.remove('waits')
   setTracing(tracing)
   wall.show(points, planned(made))
+  details(made.plan)
   timeline.of(points.rows, made.plan.plan.duration_s)
-  const { target, strokes, plan: timed, head } = made.plan
-  by('size').textContent = `${length(target.width_m)} × ${length(target.height_m)}`
-  by('count').textContent = String(strokes.count)
-  by('length').textContent = length(strokes.length_m)
-  by('duration').textContent = time(timed.duration_s)
-  by('spot').textContent = `${plain(head.spot_mm, 1)} mm wide`
-  by('command').textContent = made.command
+  figures(made)
   const remarks = by('remarks')
   remarks.hidden = made.remarks.length === 0
   remarks.querySelector('ul')?.replaceChildren(...made.remarks.map((remark) => element('li', { text: asLabelled(remark) })))
-  by('strokes').replaceChildren(...made.plan.sequence.slice(0, 500).map(row))
-}
-
-/** @param {api.Stroke} stroke */
-function row(stroke) {
-  const cells = [String(stroke.number), length(stroke.length_m), time(stroke.lit_from_s), time(stroke.lit_to_s - stroke.lit_from_s)]
-  return element('tr', {}, ...cells.map((text) => element('td', { text })))
 }
 
 /** Tells what went wrong with what is on the wall; null for nothing. @param {unknown} error */
@@ -293,9 +300,6 @@ async function stop() {
   setTimeout(() => by('stop').classList.remove('pressed'), 300)
 }
 
-/** Flags without what is left out of a command, in one order. @param {api.Flags} flags */
-const essence = (flags) => JSON.stringify(Object.entries(flags).filter(([, value]) => value !== '' && value !== false && value !== null).sort())
-
 /** Puts a picture on the wall. @param {string} picture @param {api.Flags} [flags] */
 function choose(picture, flags) {
   const { distance, rig } = store.asked.flags
@@ -315,7 +319,7 @@ function view() {
   const is = session?.role === null ? 'outside' : VIEWS.includes(named) ? named : 'place'
   const attends = is === 'run'
   by('place').hidden = is !== 'place' && !attends
-  for (const id of ['runs', 'compare', 'lab', 'devices', 'outside']) by(id).hidden = is !== id
+  for (const id of ['runs', 'compare', 'lab', 'rigs', 'devices', 'outside']) by(id).hidden = is !== id
   by('placing').hidden = attends
   by('attend').hidden = !attends
   document.body.classList.toggle('attending', attends)
@@ -324,24 +328,29 @@ function view() {
   wall.fixed = attends || !operates
   wall.dirty = true
   const current = is === 'compare' ? 'runs' : is
-  for (const id of ['place', 'run', 'runs', 'lab', 'devices']) {
+  for (const id of ['place', 'run', 'runs', 'lab', 'rigs', 'devices']) {
     if (id === current) by(`to-${id}`).setAttribute('aria-current', 'page')
     else by(`to-${id}`).removeAttribute('aria-current')
   }
   if (is !== shownView) scrollTo(0, 0)
+  const was = shownView
   shownView = is
-  devices.show(is === 'devices')
-  if (is === 'lab') lab.show(more ?? '')
+  if (is === 'devices' || was === 'devices') devices().then((view) => view.show(is === 'devices'), (error) => told('devices-problem', error))
+  if (is === 'lab') lab().then((view) => view.show(more ?? ''), (error) => told('lab-problem', error))
+  if (is === 'rigs') rigs().then((view) => view.show(more ?? '')).catch((error) => told('rigs-problem', error))
   if (is === 'runs') runs.show(folder).catch((error) => told('runs-problem', error))
   if (is === 'compare') {
     const [first, second] = decodeURIComponent(more ?? '').split(',')
-    showCompared(first, second).then(() => told('compare-problem', null), (error) => told('compare-problem', error))
+    import('./compare.js').then((view) => view.showCompared(first, second)).then(() => told('compare-problem', null), (error) => told('compare-problem', error))
   }
 }
 
 /** @param {KeyboardEvent} event */
 function key(event) {
-  if (event.key === 'Escape') return void stop()
+  if (event.key === 'Escape') {
+    wall.cancel()
+    return void stop()
+  }
   const target = /** @type {HTMLElement} */ (event.target)
   const types = target.closest('input:not([type=range]), select, textarea') !== null
   const letter = event.key.toLowerCase()
@@ -388,11 +397,13 @@ function heads() {
 
 store.watch((asked) => {
   fields.show(asked.flags)
+  marks.show(plan?.plan ?? null)
+  dark.show(plan?.plan ?? null)
   heads()
   // what was traced was another wish
   by('result').hidden = true
   keep('sessionStorage', 'asked', JSON.stringify(asked))
-  wall.place({ ...boxOf(asked.flags), width: wall.box.width, height: wall.box.height })
+  wall.place({ ...lies(asked.flags), width: wall.box.width, height: wall.box.height })
   pictures.mark(asked.picture)
   by('name').textContent = asked.picture
   planSoon()
@@ -416,6 +427,11 @@ addEventListener('hashchange', () => {
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => wall.redraw())
 
 themes(by('theme'), () => wall.redraw())
+units(by('units'), (imperial) => {
+  shown.imperial = imperial
+  if (plan) figures(plan)
+  wall.redraw()
+})
 fields.show(store.asked.flags)
 by('name').textContent = store.asked.picture
 view()
@@ -439,12 +455,20 @@ async function about() {
     folder = told.folder
     head = told.head
     if (head) fields.name('rig', `${head.name}: the one here`)
+    await ownRigs()
     heads()
     view()
   } catch (error) {
     problem(error)
     setTimeout(about, 2 * LOOK)
   }
+}
+
+/** Lets the head be chosen among the folder’s rig files too; what is planned with one that was changed is planned anew. */
+async function ownRigs() {
+  const all = await api.rigs()
+  fields.also('rig', all.filter((rig) => rig.own && !rig.problem).map((rig) => [rig.name, rig.name]), store.asked.flags)
+  if (all.some((rig) => rig.own && rig.name === store.asked.flags.rig)) planSoon()
 }
 
 /** Looks whether somebody traces: another page, or this one before it was loaded again. */

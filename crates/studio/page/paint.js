@@ -62,7 +62,7 @@ export class Lit {
 }
 
 /**
- * @typedef {{ wall: string, card: string, grid: string, rule: string, soft: string, light: string, accent: string, dark: string, from: string, to: string }} Colours
+ * @typedef {{ wall: string, card: string, grid: string, rule: string, soft: string, light: string, accent: string, dark: string, warn: string, on: string, from: string, to: string }} Colours
  * @param {Element} element @returns {Colours}
  */
 export function coloursOf(element) {
@@ -77,6 +77,8 @@ export function coloursOf(element) {
     light: value('light'),
     accent: value('accent'),
     dark: value('dark'),
+    warn: value('warn'),
+    on: value('on-accent'),
     from: value('first'),
     to: value('last'),
   }

@@ -60,3 +60,6 @@ export class Store {
     for (const listener of this.listeners) listener(asked)
   }
 }
+
+/** Flags without what is left out of a command, in one order. @param {Flags} flags */
+export const essence = (flags) => JSON.stringify(Object.entries(flags).filter(([, value]) => value !== false && value !== null && value.toString() !== '').sort())

@@ -1,19 +1,21 @@
 // @ts-check
 /** The wall in true size: rulers, the drawing, its handles. The drawing is drawn once for each zoom, and that picture is moved while somebody drags it. */
 
-import { Lit, boundsOf, coloursOf, drawPlan, tidy } from './paint.js'
+import { Lit, boundsOf, coloursOf, drawPlan } from './paint.js'
+import { RULER, drawGrid, drawRulers } from './scale.js'
 import { length } from './words.js'
 
 /**
  * @typedef {import('./api.js').Points} Points
  * @typedef {import('./paint.js').Colours} Colours
  * @typedef {{ x: number, y: number, turn: number, width: number, height: number }} Box where the picture lies: its middle and size, m, y up; its turn, rad, anticlockwise
+ * @typedef {{ draw: (context: CanvasRenderingContext2D, wall: Wall, colours: Colours) => void }} Layer what lies under the drawing, or over it
+ * @typedef {{ from: (at: [number, number]) => void, to: (at: [number, number]) => void, done: (at: [number, number]) => void, cancelled: () => void }} Tool what is shown on the wall by a pointer, m: where it begins, goes, and ends
  * @typedef {{ x: number, y: number, scale: number }} View what is seen: the point in the middle, m, and pixels a metre
  */
 
-/** Pixels around the drawing when all is shown; of the rulers; of a handle. */
+/** Pixels around the drawing when all is shown; of a handle. */
 const MARGIN = 64
-const RULER = 26
 const HANDLE = 7
 /** Boxes that differ by less lie at the same place, m. */
 const SPAN_M = 5e-4
@@ -55,12 +57,22 @@ export class Wall {
     this.lit = new Lit()
     this.dirty = true
     this.first = true
+    /** Whether all of the drawing is shown: nobody has looked closer since. */
+    this.fitted = true
     /** Whether the drawing stays where it is: it is being drawn there. */
     this.fixed = false
     /** Whether the spot is known to be dark, wherever the plan has it. */
     this.dark = false
     /** @type {[number, number] | null} a place that is marked, m */
     this.mark = null
+    /** @type {Layer[]} */
+    this.beneath = []
+    /** @type {Layer[]} */
+    this.above = []
+    /** @type {Tool | null} what a pointer shows now, instead of moving anything */
+    this.tool = null
+    /** Whether its place alone is free: marks tell its turn and its size. */
+    this.holds = false
     new ResizeObserver(() => this.#resized()).observe(canvas)
     this.#listen()
     const frame = () => {
@@ -73,7 +85,7 @@ export class Wall {
   /** Takes a plan, or none. @param {Points | null} points @param {Box} box */
   show(points, box) {
     // who has looked closer goes on looking there
-    const fits = this.points === null || this.#isSeen(this.planned)
+    const fits = this.points === null || this.fitted || this.#isSeen(this.planned)
     this.points = points
     this.planned = { ...box }
     this.bounds = points ? boundsOf(points, this.planned) : null
@@ -104,10 +116,11 @@ export class Wall {
 
   /** @param {number} factor @param {[number, number]} [about] pixels */
   zoom(factor, about) {
+    this.fitted = false
     const [px, py] = about ?? [this.canvas.clientWidth / 2, this.canvas.clientHeight / 2]
-    const [x, y] = this.#place([px, py])
+    const [x, y] = this.toPlace([px, py])
     this.view.scale = Math.min(1e5, Math.max(5, this.view.scale * factor))
-    const [after_x, after_y] = this.#place([px, py])
+    const [after_x, after_y] = this.toPlace([px, py])
     this.view.x += x - after_x
     this.view.y += y - after_y
     this.dirty = true
@@ -124,20 +137,21 @@ export class Wall {
     this.view.scale = Math.min(room(wide) / (right - left), room(high) / (top - low))
     this.view.x = (left + right) / 2 - RULER / 2 / this.view.scale
     this.view.y = (low + top) / 2 + RULER / 2 / this.view.scale
+    this.fitted = true
     this.dirty = true
   }
 
   /** Whether all of the drawing is in view, and not small in it. @param {Box} box */
   #isSeen(box) {
     const { clientWidth: wide, clientHeight: high } = this.canvas
-    const corners = this.#corners(box).map((corner) => this.#pixels(corner))
+    const corners = this.#corners(box).map((corner) => this.toPixels(corner))
     const inside = corners.every(([x, y]) => x >= RULER && x <= wide && y >= RULER && y <= high)
     return inside && box.width * this.view.scale > 0.1 * wide
   }
 
   #resized() {
     if (this.canvas.clientWidth === 0) return
-    const fits = this.points === null || this.#isSeen(this.box)
+    const fits = this.points === null || this.fitted || this.#isSeen(this.box)
     this.#sharpen()
     // who has looked closer goes on looking there
     if (fits) this.fit()
@@ -154,13 +168,13 @@ export class Wall {
   }
 
   /** Pixels of a place. @param {[number, number]} at @returns {[number, number]} */
-  #pixels([x, y]) {
+  toPixels([x, y]) {
     const { scale } = this.view
     return [this.canvas.clientWidth / 2 + (x - this.view.x) * scale, this.canvas.clientHeight / 2 - (y - this.view.y) * scale]
   }
 
   /** The place at a pixel. @param {[number, number]} at @returns {[number, number]} */
-  #place([px, py]) {
+  toPlace([px, py]) {
     const { scale } = this.view
     return [this.view.x + (px - this.canvas.clientWidth / 2) / scale, this.view.y - (py - this.canvas.clientHeight / 2) / scale]
   }
@@ -176,7 +190,7 @@ export class Wall {
 
   /** @returns {[number, number]} pixels of the ring by which it is turned */
   #ring() {
-    const [[ax, ay], [bx, by]] = this.#corners(this.box).map((corner) => this.#pixels(corner))
+    const [[ax, ay], [bx, by]] = this.#corners(this.box).map((corner) => this.toPixels(corner))
     const [mx, my] = [(ax + bx) / 2, (ay + by) / 2]
     const [sin, cos] = [Math.sin(this.box.turn), Math.cos(this.box.turn)]
     return [mx - 26 * sin, my - 26 * cos]
@@ -192,7 +206,8 @@ export class Wall {
     const colours = coloursOf(canvas)
     context.setTransform(ratio, 0, 0, ratio, 0, 0)
     context.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight)
-    this.#grid(colours)
+    drawGrid(context, this, colours)
+    for (const layer of this.beneath) layer.draw(context, this, colours)
     if (this.points) {
       const still = this.drag === null && same(this.box, this.planned)
       if (!this.bitmap || (this.drag === null && off(this.bitmap.scale, this.#scale()))) this.#paint(colours)
@@ -208,13 +223,14 @@ export class Wall {
       if (this.tick >= 0 && still) this.#light(colours)
     }
     if (this.points && !this.fixed) this.#handles(colours)
+    for (const layer of this.above) layer.draw(context, this, colours)
     if (this.mark) this.#cross(this.mark, colours)
-    this.#rulers(colours)
+    drawRulers(context, this, colours)
   }
 
   /** Puts what was planned where it is to be: from then on one is a metre, y down, from the middle of what was planned. @param {CanvasRenderingContext2D} context */
   #carry(context) {
-    const [px, py] = this.#pixels([this.box.x, this.box.y])
+    const [px, py] = this.toPixels([this.box.x, this.box.y])
     const by = this.box.width / this.planned.width
     context.translate(px, py)
     context.rotate(this.planned.turn - this.box.turn)
@@ -250,7 +266,7 @@ export class Wall {
     const seen = this.lit.until(this.tick, points, this.view, this.canvas, ratio, colours)
     this.context.drawImage(seen, 0, 0, this.canvas.clientWidth, this.canvas.clientHeight)
     const tick = Math.min(this.tick, points.rows - 1)
-    const [x, y] = this.#pixels([points.x[tick], points.y[tick]])
+    const [x, y] = this.toPixels([points.x[tick], points.y[tick]])
     const is_lit = points.lit[tick] > 0 && !this.dark
     this.context.beginPath()
     this.context.arc(x, y, is_lit ? 5 : 3.5, 0, 2 * Math.PI)
@@ -270,7 +286,7 @@ export class Wall {
 
   /** A place that the head marks. @param {[number, number]} at @param {Colours} colours */
   #cross(at, colours) {
-    const [x, y] = this.#pixels(at)
+    const [x, y] = this.toPixels(at)
     const { context } = this
     context.strokeStyle = colours.light
     context.lineWidth = 3
@@ -306,68 +322,9 @@ export class Wall {
   }
 
   /** @param {Colours} colours */
-  #grid(colours) {
-    const { context, canvas } = this
-    context.fillStyle = colours.wall
-    context.fillRect(0, 0, canvas.clientWidth, canvas.clientHeight)
-    const step = tidy(80 / this.view.scale)
-    const [left, top] = this.#place([0, 0])
-    const [right, low] = this.#place([canvas.clientWidth, canvas.clientHeight])
-    context.strokeStyle = colours.grid
-    context.lineWidth = 1
-    context.beginPath()
-    for (let n = Math.ceil(left / step); n * step <= right; n++) {
-      const [x] = this.#pixels([n * step, 0])
-      context.moveTo(Math.round(x) + 0.5, 0)
-      context.lineTo(Math.round(x) + 0.5, canvas.clientHeight)
-    }
-    for (let n = Math.ceil(low / step); n * step <= top; n++) {
-      const [, y] = this.#pixels([0, n * step])
-      context.moveTo(0, Math.round(y) + 0.5)
-      context.lineTo(canvas.clientWidth, Math.round(y) + 0.5)
-    }
-    context.stroke()
-  }
-
-  /** @param {Colours} colours */
-  #rulers(colours) {
-    const { context, canvas } = this
-    const [wide, high] = [canvas.clientWidth, canvas.clientHeight]
-    context.fillStyle = colours.card
-    context.fillRect(0, 0, wide, RULER)
-    context.fillRect(0, 0, RULER, high)
-    context.strokeStyle = colours.rule
-    context.lineWidth = 1
-    context.strokeRect(RULER - 0.5, RULER - 0.5, wide, high)
-    context.fillStyle = colours.soft
-    context.font = '11px system-ui, sans-serif'
-    context.textBaseline = 'middle'
-    context.textAlign = 'center'
-    const step = tidy(80 / this.view.scale)
-    const [unit, a_metre] = step >= 0.5 ? ['m', 1] : step >= 0.005 ? ['cm', 100] : ['mm', 1000]
-    const name = (/** @type {number} */ m) => String(Number((m * a_metre).toFixed(3)))
-    const [left, top] = this.#place([RULER, RULER])
-    const [right, low] = this.#place([wide, high])
-    for (let n = Math.ceil(left / step); n * step <= right; n++) {
-      const [x] = this.#pixels([n * step, 0])
-      if (x > RULER + 14) context.fillText(name(n * step), x, RULER / 2)
-    }
-    for (let n = Math.ceil(low / step); n * step <= top; n++) {
-      const [, y] = this.#pixels([0, n * step])
-      if (y < RULER + 14) continue
-      context.save()
-      context.translate(RULER / 2, y)
-      context.rotate(-Math.PI / 2)
-      context.fillText(name(n * step), 0, 0)
-      context.restore()
-    }
-    context.fillText(unit, RULER / 2, RULER / 2)
-  }
-
-  /** @param {Colours} colours */
   #handles(colours) {
     const { context } = this
-    const corners = this.#corners(this.box).map((corner) => this.#pixels(corner))
+    const corners = this.#corners(this.box).map((corner) => this.toPixels(corner))
     context.strokeStyle = colours.accent
     context.fillStyle = colours.card
     context.lineWidth = 1.25
@@ -377,6 +334,18 @@ export class Wall {
     context.closePath()
     context.stroke()
     context.setLineDash([])
+    if (!this.holds) this.#grips(corners)
+    context.fillStyle = colours.soft
+    context.font = '12px system-ui, sans-serif'
+    context.textAlign = 'center'
+    const lowest = Math.max(...corners.map(([, y]) => y))
+    const middle = corners.reduce((sum, [x]) => sum + x, 0) / 4
+    context.fillText(`${length(this.box.width)} × ${length(this.box.height)}`, middle, lowest + 16)
+  }
+
+  /** By which it is sized and turned. @param {[number, number][]} corners */
+  #grips(corners) {
+    const { context } = this
     for (const [x, y] of corners) {
       context.fillRect(x - HANDLE / 2, y - HANDLE / 2, HANDLE, HANDLE)
       context.strokeRect(x - HANDLE / 2, y - HANDLE / 2, HANDLE, HANDLE)
@@ -386,12 +355,6 @@ export class Wall {
     context.arc(rx, ry, 5, 0, 2 * Math.PI)
     context.fill()
     context.stroke()
-    context.fillStyle = colours.soft
-    context.font = '12px system-ui, sans-serif'
-    context.textAlign = 'center'
-    const lowest = Math.max(...corners.map(([, y]) => y))
-    const middle = corners.reduce((sum, [x]) => sum + x, 0) / 4
-    context.fillText(`${length(this.box.width)} × ${length(this.box.height)}`, middle, lowest + 16)
   }
 
   #listen() {
@@ -408,11 +371,12 @@ export class Wall {
 
   /** What lies under a pixel. @param {[number, number]} at */
   #under([px, py]) {
+    if (this.tool) return 'tool'
     if (!this.points || this.fixed) return 'pan'
     const near = (/** @type {[number, number]} */ [x, y], /** @type {number} */ far) => Math.hypot(px - x, py - y) < far
-    if (near(this.#ring(), 16)) return 'turn'
-    if (this.#corners(this.box).some((corner) => near(this.#pixels(corner), 16))) return 'size'
-    const [x, y] = this.#place([px, py])
+    if (!this.holds && near(this.#ring(), 16)) return 'turn'
+    if (!this.holds && this.#corners(this.box).some((corner) => near(this.toPixels(corner), 16))) return 'size'
+    const [x, y] = this.toPlace([px, py])
     const [cos, sin] = [Math.cos(this.box.turn), Math.sin(this.box.turn)]
     const [dx, dy] = [x - this.box.x, y - this.box.y]
     const inside = Math.abs(dx * cos + dy * sin) <= this.box.width / 2 && Math.abs(dy * cos - dx * sin) <= this.box.height / 2
@@ -426,6 +390,7 @@ export class Wall {
     this.fingers.set(event.pointerId, at)
     const kind = this.fingers.size > 1 ? 'pinch' : this.#under(at)
     this.#takeBack()
+    if (kind === 'tool') this.tool?.from(this.toPlace(at))
     this.drag = { kind, from: kind === 'pinch' ? this.#pinch() : at, box: { ...this.box }, view: { ...this.view }, far: false }
   }
 
@@ -434,6 +399,32 @@ export class Wall {
     if (this.drag === null || !['move', 'size', 'turn'].includes(this.drag.kind)) return
     this.box = this.drag.box
     this.moved(this.box, false)
+  }
+
+  /** Ends a drag, and what a pointer shows, as if neither had begun. */
+  cancel() {
+    this.#takeBack()
+    this.drag = null
+    const { tool } = this
+    this.tool = null
+    tool?.cancelled()
+    this.dirty = true
+  }
+
+  /** Asks a pointer to show something, or nothing any more. @param {Tool | null} tool */
+  ask(tool) {
+    this.tool = tool
+    this.canvas.dataset.under = tool ? 'tool' : 'pan'
+    this.dirty = true
+  }
+
+  /** Where a place is now that was planned there: it goes with the drawing while that is moved. @param {[number, number]} at @returns {[number, number]} */
+  carried([x, y]) {
+    const by = this.box.width / this.planned.width
+    const turn = this.box.turn - this.planned.turn
+    const [cos, sin] = [by * Math.cos(turn), by * Math.sin(turn)]
+    const [dx, dy] = [x - this.planned.x, y - this.planned.y]
+    return [this.box.x + dx * cos - dy * sin, this.box.y + dx * sin + dy * cos]
   }
 
   /** The fingers' middle and how far they are apart. @returns {[number, number]} */
@@ -445,7 +436,9 @@ export class Wall {
   /** @param {PointerEvent} event */
   #go(event) {
     const at = /** @type {[number, number]} */ ([event.offsetX, event.offsetY])
+    if (this.tool) this.tool.to(this.toPlace(at))
     if (!this.drag) {
+      this.dirty ||= this.tool !== null
       this.canvas.dataset.under = this.#under(at)
       return
     }
@@ -454,9 +447,12 @@ export class Wall {
     this.drag.far ||= Math.hypot(at[0] - from[0], at[1] - from[1]) > CLICK
     if (!this.drag.far && kind !== 'pinch') return
     const [dx, dy] = [(at[0] - from[0]) / this.view.scale, -(at[1] - from[1]) / this.view.scale]
-    const [cx, cy] = this.#pixels([box.x, box.y])
+    const [cx, cy] = this.toPixels([box.x, box.y])
     if (kind === 'move') this.box = { ...box, x: box.x + dx, y: box.y + dy }
-    else if (kind === 'pan') this.view = { ...view, x: view.x - dx, y: view.y - dy }
+    else if (kind === 'pan') {
+      this.view = { ...view, x: view.x - dx, y: view.y - dy }
+      this.fitted = false
+    }
     else if (kind === 'pinch') this.zoom((this.#pinch()[0] / from[0]) * (view.scale / this.view.scale))
     else if (kind === 'size') {
       const by = Math.max(0.02, Math.hypot(at[0] - cx, at[1] - cy) / Math.max(8, Math.hypot(from[0] - cx, from[1] - cy)))
@@ -477,6 +473,7 @@ export class Wall {
     const drag = event.type === 'pointercancel' ? null : this.drag
     this.drag = null
     this.dirty = true
+    if (drag?.kind === 'tool') this.tool?.done(this.toPlace([event.offsetX, event.offsetY]))
     if (drag?.far && ['move', 'size', 'turn'].includes(drag.kind)) this.moved(this.box, true)
   }
 }

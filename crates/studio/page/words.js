@@ -4,6 +4,9 @@
 /** Metres of the units that the program reads. */
 const UNITS = { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, '"': 0.0254, ft: 0.3048, "'": 0.3048 }
 
+/** In which units lengths are shown, and written where the page writes one. */
+export const shown = { imperial: false }
+
 /** A length as typed, such as 3m or 24 in; null of what is none. @param {string} text @returns {number | null} */
 export function metres(text) {
   const found = /^\s*([+-]?[0-9]*[.,]?[0-9]+)\s*(mm|cm|m|in|ft|"|')?\s*$/.exec(text)
@@ -29,6 +32,9 @@ export function degrees(text) {
   return found[2] === 'rad' ? (value * 180) / Math.PI : value
 }
 
+/** All values of a flag that may be given again. @param {string | boolean | string[] | null | undefined} value @returns {string[]} */
+export const listed = (value) => (Array.isArray(value) ? value : typeof value === 'string' && value !== '' ? [value] : [])
+
 /** A number without needless digits. @param {number} value @param {number} digits */
 export function plain(value, digits) {
   return String(Number(value.toFixed(digits)) + 0)
@@ -36,6 +42,7 @@ export function plain(value, digits) {
 
 /** A length for people. @param {number} m */
 export function length(m) {
+  if (shown.imperial) return Math.abs(m) >= 10 * UNITS.ft ? `${plain(m / UNITS.ft, 2)} ft` : `${plain(m / UNITS.in, 2)} in`
   if (Math.abs(m) >= 1) return `${plain(m, 2)} m`
   if (Math.abs(m) >= 0.1) return `${plain(m * 100, 1)} cm`
   return `${plain(m * 1000, 1)} mm`
@@ -43,7 +50,7 @@ export function length(m) {
 
 /** A length as the program reads it. @param {number} m */
 export function typed(m) {
-  return `${plain(m * 1000, 1)}mm`
+  return shown.imperial ? `${plain(m / UNITS.in, 3)}in` : `${plain(m * 1000, 1)}mm`
 }
 
 /** Minutes and seconds. @param {number} s */

@@ -16,6 +16,7 @@ use crate::folder::{Folder, no_run};
 use crate::live::Live;
 use crate::points;
 use crate::program::{Head, Performed, Program, Seat};
+use crate::rig_names::Rigs;
 use crate::tasks::{AtLast, Ended, Work};
 
 /// Plans whose points are kept for pages to fetch.
@@ -143,7 +144,7 @@ impl Desk {
             ));
         };
         let mut command = vec![name.to_owned(), path.to_string_lossy().into_owned()];
-        command.extend(arguments(flags, which, &self.program.rigs())?);
+        command.extend(arguments(flags, which, &self.known_rigs())?);
         if let Some(head) = self.head_of(flags) {
             let rig = if which == Which::Attended { &head.draws_as } else { &head.planned_as };
             command.push(format!("--rig={rig}"));
@@ -271,20 +272,18 @@ impl Desk {
         let dir = self.run_dir(run)?;
         let told = self.run(run)?.ok_or_else(|| no_run(run))?;
         let rig = told["rig"].as_str();
-        let head = self.program.head();
+        let (head, rigs) = (self.program.head(), self.known_rigs());
         let is_heads = |rig: &str| {
             head.is_some_and(|head| [&head.draws_as, &head.planned_as].iter().any(|is| *is == rig))
         };
-        if let Some(rig) =
-            rig.filter(|rig| !is_heads(rig) && !self.program.rigs().iter().any(|known| known == rig))
-        {
+        if let Some(rig) = rig.filter(|rig| !is_heads(rig) && rigs.value(rig).is_none()) {
             let message = format!(
                 "{run} was drawn by the head {rig}: open the studio with --rig {rig}, and go on with it there"
             );
             return Err(Failure::usage("usage", message));
         }
         let mut command = vec!["resume".to_owned(), dir];
-        command.extend(arguments(flags, Which::Rest, &[])?);
+        command.extend(arguments(flags, Which::Rest, &Rigs::default())?);
         let picture = told["picture"].as_str().unwrap_or("picture.png").to_owned();
         let keeps_time = head.is_some_and(|head| head.is_at_port && rig == Some(head.draws_as.as_str()));
         Ok((command, picture, told["flags"].clone(), keeps_time))

@@ -3,14 +3,23 @@
 use serde_json::{Map, Value};
 use tracelight_task::{Failure, nearest, quoted};
 
+use crate::rig_names::Rigs;
+
 /// Flags of `plan` and `trace` that a page may give. None of them names a file.
-const FLAGS: [&str; 29] = [
+const FLAGS: [&str; 36] = [
     "width",
     "height",
     "offset",
     "rotate",
     "flip",
     "from",
+    "origin",
+    "align",
+    "paper",
+    "straighten",
+    "whole",
+    "sheets",
+    "force",
     "fit",
     "no_go",
     "layer",
@@ -78,7 +87,7 @@ const MOST_TIMES: usize = 100;
 pub(crate) fn arguments(
     flags: &Map<String, Value>,
     which: Which,
-    rigs: &[String],
+    rigs: &Rigs,
 ) -> Result<Vec<String>, Failure> {
     let is_as_before = |name: &str| which == Which::Rest && Which::Attended.has(name) && !which.has(name);
     if let Some((name, _)) = flags.iter().find(|(name, _)| is_as_before(name)) {
@@ -94,7 +103,7 @@ pub(crate) fn arguments(
 pub(crate) fn named_values(
     flags: &Map<String, Value>,
     has: impl Fn(&str) -> bool,
-    rigs: &[String],
+    rigs: &Rigs,
 ) -> Result<Vec<String>, Failure> {
     let mut arguments = Vec::new();
     for (name, value) in flags {
@@ -118,7 +127,7 @@ pub(crate) fn named_values(
     Ok(arguments)
 }
 
-fn argument(flag: &str, value: &Value, rigs: &[String]) -> Result<Option<String>, Failure> {
+fn argument(flag: &str, value: &Value, rigs: &Rigs) -> Result<Option<String>, Failure> {
     let text = match value {
         Value::String(text) => text.trim().to_owned(),
         Value::Number(number) => number.to_string(),
@@ -127,8 +136,11 @@ fn argument(flag: &str, value: &Value, rigs: &[String]) -> Result<Option<String>
     if text.len() > MOST_BYTES || text.contains(|c: char| c.is_control()) {
         return Err(refused(format!("{flag} is longer than {MOST_BYTES} bytes, or not one line")));
     }
-    if flag == "rig" && !text.is_empty() && !rigs.contains(&text) {
-        return Err(refused(format!("rig is one of {}; it is {text}", rigs.join(", "))));
+    if flag == "rig" && !text.is_empty() {
+        let names = || rigs.names().collect::<Vec<_>>().join(", ");
+        let value =
+            rigs.value(&text).ok_or_else(|| refused(format!("rig is one of {}; it is {text}", names())))?;
+        return Ok(Some(format!("--rig={value}")));
     }
     // with its value in one argument: no value can be taken for another flag
     Ok((!text.is_empty()).then(|| format!("--{flag}={text}")))
@@ -192,7 +204,7 @@ mod tests {
 
     fn of(flags: Value) -> Result<Vec<String>, Failure> {
         let Value::Object(flags) = flags else { unreachable!() };
-        arguments(&flags, Which::Drawing, &["report".to_owned(), "worn".to_owned()])
+        arguments(&flags, Which::Drawing, &Rigs::of_presets(&["report", "worn"]))
     }
 
     #[test]

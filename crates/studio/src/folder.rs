@@ -72,7 +72,7 @@ impl Folder {
         // from the root: no name of it is taken for a flag
         let dir = std::path::absolute(dir).map_err(|e| cannot_write(dir, &e))?;
         let folder = Self { dir };
-        for part in [folder.pictures(), folder.runs()] {
+        for part in [folder.pictures(), folder.runs(), folder.dir.join(Kind::Rigs.word())] {
             fs::create_dir_all(&part).map_err(|e| cannot_write(&part, &e))?;
         }
         for (name, bytes) in EXAMPLES {
@@ -140,6 +140,11 @@ impl Folder {
     /// A place for the table of a plan, of this process alone.
     pub(crate) fn table(&self, number: u64) -> PathBuf {
         self.dir.join(format!(".plan-{}-{number}.csv", std::process::id()))
+    }
+
+    /// A place for a rig file that is looked at, of this process alone.
+    pub(crate) fn draft(&self, number: u64) -> PathBuf {
+        self.dir.join(format!(".rig-{}-{number}.toml", std::process::id()))
     }
 
     /// A place for the plot of an experiment, of this process alone.
@@ -261,6 +266,7 @@ impl Folder {
         let found = match kind {
             Kind::Runs => self.run(id),
             Kind::Pictures => self.picture(id),
+            Kind::Rigs => self.rig(id),
         };
         let Some(path) = found else {
             return Err(Failure::usage(
@@ -308,7 +314,7 @@ impl Folder {
         // its place is taken first, so that nobody's newer one gives way
         let taken = match kind {
             Kind::Runs => fs::create_dir(&to),
-            Kind::Pictures => fs::File::create_new(&to).map(drop),
+            Kind::Pictures | Kind::Rigs => fs::File::create_new(&to).map(drop),
         };
         match taken.and_then(|()| fs::rename(&from, &to)) {
             Ok(()) => Ok(id.to_owned()),
@@ -332,19 +338,21 @@ pub(crate) fn no_run(id: &str) -> Failure {
 pub(crate) enum Kind {
     Pictures,
     Runs,
+    Rigs,
 }
 
 impl Kind {
-    const fn word(self) -> &'static str {
+    pub(crate) const fn word(self) -> &'static str {
         match self {
             Self::Pictures => "pictures",
             Self::Runs => "runs",
+            Self::Rigs => "rigs",
         }
     }
 }
 
 /// Whether a name is one of this folder alone: nothing that leads elsewhere, and no hidden one.
-fn is_plain(name: &str) -> bool {
+pub(crate) fn is_plain(name: &str) -> bool {
     !name.is_empty() && !name.starts_with('.') && name.chars().all(is_letter)
 }
 

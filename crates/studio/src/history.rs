@@ -6,6 +6,7 @@ use tracelight_task::Failure;
 use crate::desk::Desk;
 use crate::flags::{asked_by, mode_of};
 use crate::folder::no_run;
+use crate::rig_names::Rigs;
 
 /// The head that a command line names.
 fn rig_of(command: &[String]) -> Option<&str> {
@@ -20,7 +21,7 @@ impl Desk {
     /// What the program says.
     pub(crate) fn runs(&self) -> Result<Value, Failure> {
         let mut told = self.ask(&["runs", &self.folder.runs().to_string_lossy(), "--json"])?;
-        let rigs = self.program.rigs();
+        let rigs = self.known_rigs();
         for run in told["runs"].as_array_mut().into_iter().flatten() {
             self.know(run, &rigs);
         }
@@ -28,7 +29,7 @@ impl Desk {
     }
 
     /// Adds a run's id, its files, and the picture and flags that it was asked by; null where no page can ask so.
-    fn know(&self, run: &mut Value, rigs: &[String]) {
+    fn know(&self, run: &mut Value, rigs: &Rigs) {
         let id = run["folder"]
             .as_str()
             .and_then(|dir| dir.rsplit(['/', '\\']).next())
@@ -41,11 +42,13 @@ impl Desk {
             Some((picture, flags))
         });
         let (picture, mut flags) = asked.unzip();
-        // another head, or none, is there now
-        let is_chosen = |rig: &Value| rigs.iter().any(|known| rig == known);
-        let is_other = flags.as_ref().and_then(|flags| flags.get("rig")).is_some_and(|rig| !is_chosen(rig));
-        flags.iter_mut().filter(|_| is_other).for_each(|flags| drop(flags.remove("rig")));
-        run["rig"] = json!(rig_of(&command));
+        if let Some(flags) = &mut flags {
+            let rig = flags.remove("rig");
+            // another head, or none, is there now
+            let name = rig.as_ref().and_then(Value::as_str).and_then(|rig| rigs.name_of(rig));
+            flags.extend(name.map(|name| ("rig".to_owned(), json!(name))));
+        }
+        run["rig"] = json!(rig_of(&command).map(|rig| rigs.name_of(rig).unwrap_or(rig)));
         run["mode"] = json!(mode_of(&command));
         run["files"] = json!(self.folder.run_files(&id));
         (run["id"], run["picture"], run["flags"]) = (json!(id), json!(picture), json!(flags));
@@ -75,7 +78,7 @@ impl Desk {
     /// `unreadable`; what the program says.
     pub(crate) fn compare(&self, first: &str, second: &str) -> Result<Value, Failure> {
         let mut told = self.ask(&["compare", &self.run_dir(first)?, &self.run_dir(second)?, "--json"])?;
-        let rigs = self.program.rigs();
+        let rigs = self.known_rigs();
         ["first", "second"].into_iter().for_each(|of| self.know(&mut told[of], &rigs));
         Ok(told)
     }

@@ -8,6 +8,7 @@ use tracelight_task::{Failure, nearest};
 
 use crate::desk::Desk;
 use crate::flags::{named_values, typed};
+use crate::rig_names::Rigs;
 use crate::tasks::failure_json;
 
 /// What a page asks.
@@ -46,7 +47,7 @@ impl Experiment {
     ///
     /// # Errors
     /// `usage` of another experiment, or of what could read a file.
-    fn command(&self, rigs: &[String]) -> Result<Vec<String>, Failure> {
+    fn command(&self, rigs: &Rigs) -> Result<Vec<String>, Failure> {
         let Self { command, of, flags } = self;
         let Some((_, own)) = EXPERIMENTS.iter().find(|(name, _)| name == command) else {
             let names = EXPERIMENTS.map(|(name, _)| name);
@@ -94,7 +95,7 @@ impl Desk {
     /// # Errors
     /// What is wrong with it; what the program says.
     pub(crate) fn experiment(&self, asked: &Experiment) -> Result<Value, Failure> {
-        let command = asked.command(&self.program.rigs())?;
+        let command = asked.command(&self.known_rigs())?;
         let work = self.work();
         let plot = self.folder.plot(work.id);
         let at = 2.min(command.len());
@@ -123,7 +124,7 @@ mod tests {
     use super::*;
 
     fn of(asked: Value) -> Result<Vec<String>, Failure> {
-        serde_json::from_value::<Experiment>(asked).unwrap().command(&["report".to_owned()])
+        serde_json::from_value::<Experiment>(asked).unwrap().command(&Rigs::of_presets(&["report"]))
     }
 
     #[test]

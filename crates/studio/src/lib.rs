@@ -20,6 +20,8 @@ mod live;
 mod points;
 mod program;
 mod refused;
+mod rig_names;
+mod rigs;
 mod sent;
 mod serve;
 mod server;

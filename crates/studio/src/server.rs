@@ -30,6 +30,7 @@ use crate::head::Move;
 use crate::house::House;
 use crate::lab::Experiment;
 use crate::refused::Refused;
+use crate::rigs::Written;
 use crate::sent::sent;
 use crate::session;
 use crate::socket::{MOST_MESSAGE, ask, serve_socket, watch_operator};
@@ -59,6 +60,8 @@ pub(crate) fn router(house: House, door: Door) -> Router {
         .route("/runs", get(runs))
         .route("/runs/{run}", get(one_run).delete(discard_run))
         .route("/runs/{run}/files/{name}", get(run_file))
+        .route("/rigs", get(rigs))
+        .route("/rigs/{name}", get(rig).put(write_rig).delete(discard_rig))
         .route("/trash/{kind}/{name}", post(restore))
         .route("/compare", get(compare));
     Router::new()
@@ -318,6 +321,28 @@ async fn discard_run(desk: Shared, Path(run): Path<String>) -> Result<Json<Value
 
 async fn discard_picture(desk: Shared, Path(id): Path<String>) -> Result<Json<Value>, Refused> {
     discard(desk, Kind::Pictures, id).await
+}
+
+async fn discard_rig(desk: Shared, Path(name): Path<String>) -> Result<Json<Value>, Refused> {
+    discard(desk, Kind::Rigs, name).await
+}
+
+async fn rigs(State(desk): Shared) -> Result<Json<Value>, Refused> {
+    beside(move || desk.rigs()).await.map(Json)
+}
+
+async fn rig(State(desk): Shared, Path(name): Path<String>) -> Result<Json<Value>, Refused> {
+    beside(move || desk.rig_text(&name)).await.map(Json).map_err(Refused::of_path)
+}
+
+async fn write_rig(
+    State(desk): Shared,
+    Path(name): Path<String>,
+    bytes: Bytes,
+) -> Result<Json<Value>, Refused> {
+    let written: Written = serde_json::from_slice(&bytes)
+        .map_err(|e| Refused::usage(format!("a rig file is written by {{\"toml\": TEXT}}: {e}")))?;
+    beside(move || desk.write_rig(&name, &written)).await.map(Json)
 }
 
 async fn discard(State(desk): Shared, kind: Kind, id: String) -> Result<Json<Value>, Refused> {
