@@ -439,6 +439,15 @@ const lab = async () => {
   await until(page, 'a wrong answer is not told', () => /Not yet/.test(document.getElementById('lab-verdict').textContent))
   await answers('18,8', '2.16')
   await until(page, 'a right answer is not told', () => /Right/.test(document.getElementById('lab-verdict').textContent))
+  await page.reload()
+  await until(page, 'a lesson that was passed is forgotten', () => /Lesson 1 ✓/.test(document.getElementById('lesson-list').textContent))
+  // what takes seconds waits until it is asked for; what was tuned is kept as a rig file
+  await page.goto(address + '#lab=tune')
+  await page.fill('[name=laws]', 'state')
+  await page.click('#lab-form .go')
+  await until(page, 'nothing is tuned', () => /picked/.test(document.getElementById('lab-words').textContent) && document.querySelector('#lab-plot img'))
+  await page.click('#keep-rig')
+  await until(page, 'what was tuned is not kept', () => document.getElementById('rig-title').textContent === 'tuned.toml' && /pan_bandwidth/.test(document.getElementById('rig-text').value))
   await page.context().close()
 }
 

@@ -15,7 +15,7 @@
  * @typedef {{ id: string, folder: string, begun: string, picture: string | null, flags: Flags | null, rig: string | null, mode: string, points: { count: number, done: number } | null, files: { name: string, bytes: number }[], width_m: number, height_m: number, strokes: number, duration_s: number | null,
  *   rms_mm: number | null, max_mm: number | null, finished: boolean, running: boolean, left: boolean, went_on_in: string | null, goes_on_with: string | null, progress: { stroke: number, strokes: number } | null }} RunTold
  * @typedef {{ first: RunTold, second: RunTold, same_drawing: boolean, only_first_asked: string[], only_second_asked: string[], figures: { name: string, unit: string, digits: number, first: number | null, second: number | null, difference: number | null }[] }} Compared
- * @typedef {{ command: string, answer: any, words: string, svg: string, failure: Failure | null }} Experiment
+ * @typedef {{ command: string, answer: any, words: string, svg: string, rig: string | null, failure: Failure | null }} Experiment
  * @typedef {{ name: string, planned_as: string, at_port: boolean, real: boolean }} Head
  * @typedef {{ name: string, own: boolean, description: string, problem: Failure | null }} Rig
  * @typedef {{ id: number, name: string, role: 'operator' | 'viewer', lines: number, seen_s: number }} Device
@@ -72,6 +72,8 @@ export const job = async () => (await json('/jobs/current')).job
 export const moveHead = (asked) => post('/head', asked)
 /** An experiment of the lab. @param {{ command: string, of: string[], flags: Flags }} asked @returns {Promise<Experiment>} */
 export const experiment = (asked) => post('/lab', asked)
+/** Numbers of the lessons that were passed. @returns {Promise<number[]>} */
+export const lessons = async () => (await json('/lab/lessons')).passed
 export const stop = () => post('/stop', {})
 /** @returns {Promise<RunTold[]>} */
 export const runs = async () => (await json('/runs')).runs

@@ -10,7 +10,7 @@ const REST = 200
 /**
  * @typedef {{ flag: string, label: string, value?: string, hint?: string, choices?: [string, string][], check?: boolean, slide?: [number, number, number] }} Field
  *   a slide from, to, by: its value goes into the flag `gains` by its name
- * @typedef {{ command: string, name: string, words: string, systems?: string, fields: Field[] }} Experiment
+ * @typedef {{ command: string, name: string, words: string, systems?: string, fields: Field[], waits?: boolean }} Experiment one that takes seconds waits for a button
  */
 
 /** @type {[string, string][]} */
@@ -38,6 +38,54 @@ const EXPERIMENTS = [
   { command: 'locus', name: 'Root locus', words: 'Where the poles of the closed loop go as the gain rises.', systems: 'K11*G11', fields: [{ flag: 'damping', label: 'Gain for a damping of', hint: '0.7' }] },
   { command: 'pzmap', name: 'Poles and zeros', words: 'With natural frequency and damping of each.', systems: 'G11', fields: [{ flag: 'closed', label: 'Of the closed loop', check: true }] },
   { command: 'response', name: 'Response', words: 'Of linear systems, to a step, an impulse or a ramp.', systems: '1/(s^2+0.4s+1)', fields: [{ flag: 'input', label: 'Input', choices: [['', 'step'], ['impulse', 'impulse'], ['ramp', 'ramp']] }, { flag: 'duration', label: 'For', hint: '20s' }, { flag: 'closed', label: 'Of the closed loop', check: true }] },
+  {
+    command: 'design pid', name: 'Design a PID', words: 'The largest gain that keeps a phase margin, at a crossover; with its loop’s margins, its step and its poles.', systems: 'G11',
+    fields: [
+      { flag: 'type', label: 'Type', choices: [['', 'PID'], ['p', 'P'], ['pi', 'PI'], ['pd', 'PD']] },
+      { flag: 'crossover', label: 'Crossover', value: '60rad/s', hint: '60rad/s' },
+      { flag: 'phase_margin', label: 'Phase margin', hint: '55deg' },
+      { flag: 'overshoot', label: 'Overshoot at most, %', hint: '5' },
+    ],
+  },
+  {
+    command: 'tune', name: 'Tune the head', words: 'Law and bandwidth with the smallest error over heads that differ, among those that bear a gain half as large again and a current that comes late.', waits: true,
+    fields: [
+      { flag: 'shape', label: 'It draws', choices: [['', 'a circle'], ['line', 'a line']] },
+      { flag: 'laws', label: 'Laws', hint: 'all of them' },
+      { flag: 'gain_margin', label: 'Gain margin', hint: '1.5' },
+      { flag: 'plants', label: 'Heads', hint: '12' },
+      { flag: 'speed', label: 'Speed', hint: '1ft/s' },
+      { flag: 'rig', label: 'Head', choices: [['', 'report'], ['worn', 'worn'], ['bridge', 'bridge']] },
+    ],
+  },
+  {
+    command: 'montecarlo', name: 'Monte Carlo', words: 'The same drawn on many heads whose parameters vary: the middle one, 95 of 100, the worst.', waits: true,
+    fields: [
+      { flag: 'plants', label: 'Heads', hint: '60' },
+      { flag: 'shape', label: 'They draw', choices: [['', 'a circle'], ['line', 'a line']] },
+      { flag: 'law', label: 'Law', choices: LAWS },
+      { flag: 'laps', label: 'Laps, learning between', hint: '1' },
+      { flag: 'speed', label: 'Speed', hint: '1ft/s' },
+      { flag: 'rig', label: 'Head', choices: [['', 'report'], ['worn', 'worn'], ['bridge', 'bridge']] },
+    ],
+  },
+  {
+    command: 'relay', name: 'Relay', words: 'A relay lets a joint swing; how it swings tells gains, without a model.',
+    fields: [
+      { flag: 'axis', label: 'Joint', choices: [['', 'pan'], ['tilt', 'tilt']] },
+      { flag: 'level', label: 'Voltage', hint: '4V' },
+      { flag: 'phase_margin', label: 'Phase margin', hint: '55deg' },
+      { flag: 'rig', label: 'Head', choices: [['', 'report'], ['worn', 'worn'], ['bridge', 'bridge']] },
+    ],
+  },
+  {
+    command: 'profile', name: 'Motion profiles', words: 'A joint from rest to rest, motors left out: durations and peaks of every profile.',
+    fields: [
+      { flag: 'distance', label: 'Way', hint: '180deg' },
+      { flag: 'vmax', label: 'Speed at most', hint: '2rad/s' },
+      { flag: 'amax', label: 'Acceleration at most', hint: '20rad/s2' },
+    ],
+  },
   { command: 'gang', name: 'Gang of four', words: 'What a loop lets through: its sensitivities, with their peaks.', systems: 'G11', fields: [{ flag: 'controller', label: 'Controller', value: 'K11', hint: 'K11' }] },
 ]
 const LESSONS = 8
@@ -52,7 +100,7 @@ export class Lab {
     /** @type {Map<string, HTMLInputElement | HTMLSelectElement>} */
     this.inputs = new Map()
     const link = (/** @type {string} */ to, /** @type {string} */ text) => element('li', {}, element('a', { href: `#lab=${to}`, text }))
-    by('lab-list').append(...EXPERIMENTS.map(({ command, name }) => link(command, name)))
+    by('lab-list').append(...EXPERIMENTS.map(({ command, name }) => link(address(command), name)))
     by('lesson-list').append(...Array.from({ length: LESSONS }, (_, n) => link(`lesson-${n + 1}`, `Lesson ${n + 1}`)))
     by('lab-copy').addEventListener('click', () => navigator.clipboard?.writeText(by('lab-command').textContent ?? ''))
   }
@@ -60,9 +108,10 @@ export class Lab {
   /** Shows an experiment, or a lesson. @param {string} named */
   show(named) {
     const [, lesson] = /^lesson-([1-8])$/.exec(named) ?? []
-    const experiment = EXPERIMENTS.find(({ command }) => command === named) ?? EXPERIMENTS[0]
+    const experiment = EXPERIMENTS.find(({ command }) => address(command) === named) ?? EXPERIMENTS[0]
+    this.#progress()
     for (const link of document.querySelectorAll('#lab nav a')) {
-      if (link.getAttribute('href') === `#lab=${lesson ? named : experiment.command}`) link.setAttribute('aria-current', 'page')
+      if (link.getAttribute('href') === `#lab=${lesson ? named : address(experiment.command)}`) link.setAttribute('aria-current', 'page')
       else link.removeAttribute('aria-current')
     }
     this.problem(null)
@@ -82,8 +131,44 @@ export class Lab {
     by('lab-about').textContent = of.words
     const ask = () => this.#soon(() => this.#asked(of))
     if (of.systems !== undefined) this.#field({ flag: 'systems', label: 'System', value: of.systems, hint: FORMULA }, ask)
-    for (const field of of.fields) this.#field(field, ask)
-    this.#ask(this.#asked(of))
+    for (const field of of.fields) this.#field(field, of.waits ? () => {} : ask)
+    if (!of.waits) return void this.#ask(this.#asked(of))
+    const button = element('button', { type: 'button', class: 'go', text: 'Calculate' })
+    button.addEventListener('click', async () => {
+      button.setAttribute('disabled', '')
+      by('lab-words').textContent = 'It calculates…'
+      const told = await this.#ask(this.#asked(of))
+      button.removeAttribute('disabled')
+      if (told?.rig) by('lab-form').append(this.#kept(told.rig))
+    })
+    by('lab-form').append(button)
+  }
+
+  /** Lets a rig that was found be kept as a file. @param {string} toml */
+  #kept(toml) {
+    by('keep-rig')?.remove()
+    const button = element('button', { type: 'button', class: 'plain', id: 'keep-rig', text: 'Keep it as a rig file' })
+    button.addEventListener('click', async () => {
+      try {
+        const names = (await api.rigs()).map(({ name }) => name)
+        let name = 'tuned.toml'
+        for (let n = 2; names.includes(name); n++) name = `tuned-${n}.toml`
+        await api.writeRig(name, toml, false)
+        location.hash = `#rigs=${name}`
+      } catch (error) {
+        this.problem(error)
+      }
+    })
+    return button
+  }
+
+  /** Marks the lessons that were passed. */
+  async #progress() {
+    const passed = await api.lessons().catch(() => /** @type {number[]} */ ([]))
+    for (let n = 1; n <= LESSONS; n++) {
+      const link = document.querySelector(`#lesson-list a[href="#lab=lesson-${n}"]`)
+      if (link) link.textContent = `Lesson ${n}${passed.includes(n) ? ' ✓' : ''}`
+    }
   }
 
   /** @param {Field} field @param {() => void} changed */
@@ -97,6 +182,10 @@ export class Lab {
       if (slide) [input.min, input.max, input.step] = slide.map(String)
       if (!check && !slide) input.spellcheck = false
       if (hint && hint.length < 20) input.placeholder = hint
+    }
+    if (flag === 'rig') {
+      // beside presets the folder's own
+      api.rigs().then((all) => input.append(...all.filter((rig) => rig.own && !rig.problem).map(({ name }) => new Option(name, name))), () => {})
     }
     if (value !== undefined) input.value = value
     input.name = flag
@@ -178,10 +267,14 @@ export class Lab {
       const given = asks.map(({ name }) => `${name}=${this.inputs.get(name)?.value.trim().replace(',', '.')}`).join(',')
       const graded = await this.#ask({ command: 'lesson', of: [number], flags: { answer: given } })
       if (graded) by('lab-verdict').replaceChildren(...verdict(graded))
+      this.#progress()
     })
     by('lab-form').append(...asks.map((ask) => element('p', { class: 'under', text: `${ask.name}: ${ask.meaning}` })), button, element('div', { id: 'lab-verdict', class: 'stack', role: 'status' }))
   }
 }
+
+/** How the address names an experiment. @param {string} command */
+const address = (command) => command.replace(' ', '-')
 
 /** The paragraphs of a lesson; what is set apart stays together, with its empty lines. @param {string} text */
 function blocks(text) {

@@ -107,6 +107,7 @@ const pictures = new Pictures({ choose, chosen: () => store.asked.picture, probl
 const pad = new HeadPad(problem)
 // what the first view does not need comes when somebody goes there
 const lab = once(async () => new (await import('./lab.js')).Lab((error) => told('lab-problem', error)))
+const camera = once(async () => new (await import('./camera.js')).Camera({ take: (file) => void pictures.take(file), problem }))
 const rigs = once(async () => new (await import('./rigs.js')).Rigs({
   problem: (error) => told('rigs-problem', error),
   use: (rig) => {
@@ -217,7 +218,7 @@ function told(where, error) {
   place.hidden = error === null
   place.replaceChildren()
   if (error === null) return ''
-  const failure = error instanceof api.Refusal ? error.failure : { code: 'internal', message: String(error) }
+  const failure = error instanceof api.Refusal ? error.failure : { code: 'internal', message: error instanceof Error ? error.message : String(error) }
   // names without the folder that they are in
   place.append(element('strong', { text: asLabelled(failure.message).replaceAll(`${folder}/pictures/`, '').replaceAll(`${folder}/runs/`, '') }))
   // of a wrong value there is no more to be told than its message does
@@ -411,6 +412,7 @@ store.watch((asked) => {
 
 by('trace').addEventListener('click', trace)
 by('stop').addEventListener('click', stop)
+by('open-camera').addEventListener('click', () => camera().then((view) => view.open()).catch(problem))
 by('copy').addEventListener('click', () => navigator.clipboard?.writeText(by('command').textContent ?? ''))
 by('zoom-in').addEventListener('click', () => wall.zoom(1.25))
 by('zoom-out').addEventListener('click', () => wall.zoom(0.8))

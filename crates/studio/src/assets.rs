@@ -28,7 +28,7 @@ macro_rules! script {
 }
 
 /// The page first.
-pub(crate) static ASSETS: [Asset; 33] = [
+pub(crate) static ASSETS: [Asset; 34] = [
     asset!("index.html", "text/html; charset=utf-8"),
     asset!("style.css", "text/css; charset=utf-8"),
     asset!("icon.svg", "image/svg+xml"),
@@ -52,6 +52,7 @@ pub(crate) static ASSETS: [Asset; 33] = [
     script!("compare.js"),
     script!("head.js"),
     script!("rigs.js"),
+    script!("camera.js"),
     script!("lab.js"),
     script!("pictures.js"),
     script!("beneath.js"),

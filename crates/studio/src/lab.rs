@@ -1,13 +1,16 @@
 //! Experiments of the lab, asked by a page: what each may be asked, its figures, words and plot.
 
 use std::fs;
+use std::path::PathBuf;
 
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
+use tracelight_files as files;
 use tracelight_task::{Failure, nearest};
 
 use crate::desk::Desk;
 use crate::flags::{named_values, typed};
+use crate::folder::Folder;
 use crate::rig_names::Rigs;
 use crate::tasks::failure_json;
 
@@ -26,40 +29,117 @@ pub(crate) struct Experiment {
 
 /// Flags of systems that are formulas.
 const SYSTEM: [&str; 7] = ["set", "rig", "at", "keep_cancellations", "period", "sample", "closed"];
-/// Experiments that a page may ask for, and their own flags: those that take a moment, and read no file.
-const EXPERIMENTS: [(&str, &[&str]); 9] = [
-    ("step", &["axis", "to", "law", "observer", "reference", "gains", "anti_windup", "feedforward", "rig"]),
-    ("response", &["input", "duration", "disturbance"]),
-    ("bode", &["from", "to"]),
-    ("nyquist", &["from", "to"]),
-    ("nichols", &["from", "to"]),
-    ("locus", &["damping", "gain"]),
-    ("pzmap", &[]),
-    ("gang", &["controller", "from", "to"]),
-    ("lesson", &["answer"]),
+/// What an experiment works on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Subject {
+    /// A head, by its rig.
+    Head,
+    /// Systems as formulas.
+    Systems,
+    /// The number of a lesson.
+    Lesson,
+}
+
+/// An experiment that a page may ask for.
+struct Kind {
+    /// The words after `tracelight lab`.
+    name: &'static str,
+    of: Subject,
+    /// Its own flags: none of them names a file.
+    flags: &'static [&'static str],
+    /// Whether it writes a folder with its plot and a rig file, and not a plot alone.
+    makes_rig: bool,
+}
+
+const fn kind(name: &'static str, of: Subject, flags: &'static [&'static str]) -> Kind {
+    Kind { name, of, flags, makes_rig: false }
+}
+
+/// All of them: those that take a moment, and read no file.
+const EXPERIMENTS: [Kind; 15] = [
+    kind(
+        "step",
+        Subject::Head,
+        &["axis", "to", "law", "observer", "reference", "gains", "anti_windup", "feedforward", "rig"],
+    ),
+    kind("response", Subject::Systems, &["input", "duration", "disturbance"]),
+    kind("bode", Subject::Systems, &["from", "to"]),
+    kind("nyquist", Subject::Systems, &["from", "to"]),
+    kind("nichols", Subject::Systems, &["from", "to"]),
+    kind("locus", Subject::Systems, &["damping", "gain"]),
+    kind("pzmap", Subject::Systems, &[]),
+    kind("gang", Subject::Systems, &["controller", "from", "to"]),
+    kind(
+        "design pid",
+        Subject::Systems,
+        &["type", "crossover", "phase_margin", "overshoot", "filter", "modulus"],
+    ),
+    Kind {
+        makes_rig: true,
+        ..kind(
+            "tune",
+            Subject::Head,
+            &[
+                "law",
+                "laws",
+                "observer",
+                "gain_margin",
+                "lag",
+                "plants",
+                "shape",
+                "speed",
+                "lit_speed",
+                "seed",
+                "rig",
+            ],
+        )
+    },
+    kind(
+        "montecarlo",
+        Subject::Head,
+        &["plants", "shape", "law", "observer", "laps", "speed", "lit_speed", "seed", "rig"],
+    ),
+    kind(
+        "relay",
+        Subject::Head,
+        &["axis", "level", "hysteresis", "crossover", "phase_margin", "to", "seed", "rig"],
+    ),
+    kind("profile", Subject::Head, &["distance", "vmax", "amax", "dmax", "profile"]),
+    kind("velocity", Subject::Head, &["speeds", "intervals", "law", "observer", "seed", "rig"]),
+    kind("lesson", Subject::Lesson, &["answer"]),
 ];
+/// Counts that would take minutes, and the most of them.
+const COUNTS: [(&str, u32); 2] = [("plants", 500), ("laps", 20)];
 /// Most systems at once, and longest formula, bytes.
 const MOST_SYSTEMS: usize = 8;
 const MOST_BYTES: usize = 300;
 
 impl Experiment {
+    fn kind(&self) -> Result<&'static Kind, Failure> {
+        let command = &self.command;
+        EXPERIMENTS.iter().find(|kind| kind.name == command).ok_or_else(|| {
+            let names = EXPERIMENTS.iter().map(|kind| kind.name);
+            let near = nearest(command, names.clone())
+                .map_or_else(String::new, |near| format!("; did you mean {near}?"));
+            let names = names.collect::<Vec<_>>().join(", ");
+            Failure::usage("usage", format!("{command:?} is no experiment of the studio: {names}{near}"))
+        })
+    }
+
     /// The command line, without where its plot goes.
     ///
     /// # Errors
     /// `usage` of another experiment, or of what could read a file.
     fn command(&self, rigs: &Rigs) -> Result<Vec<String>, Failure> {
         let Self { command, of, flags } = self;
-        let Some((_, own)) = EXPERIMENTS.iter().find(|(name, _)| name == command) else {
-            let names = EXPERIMENTS.map(|(name, _)| name);
-            let near =
-                nearest(command, names).map_or_else(String::new, |near| format!("; did you mean {near}?"));
-            let message = format!("{command:?} is no experiment of the studio: {}{near}", names.join(", "));
-            return Err(Failure::usage("usage", message));
+        let kind = self.kind()?;
+        let has = |flag: &str| {
+            kind.flags.contains(&flag) || (kind.of == Subject::Systems && SYSTEM.contains(&flag))
         };
-        let has_systems = !["step", "lesson"].contains(&command.as_str());
-        let has = |flag: &str| own.contains(&flag) || (has_systems && SYSTEM.contains(&flag));
-        let mut all = vec!["lab".to_owned(), command.clone()];
+        let mut all: Vec<String> =
+            std::iter::once("lab").chain(command.split(' ')).map(str::to_owned).collect();
         all.extend(named_values(flags, has, rigs)?);
+        all.iter().try_for_each(|word| is_quick(word))?;
         // however often it is given
         all.iter().filter_map(|word| word.strip_prefix("--controller=")).try_for_each(is_formula)?;
         if of.len() > MOST_SYSTEMS {
@@ -74,6 +154,25 @@ impl Experiment {
         all.extend(of.iter().cloned());
         Ok(all)
     }
+}
+
+/// Refuses what takes minutes, and a shape that could be a file's name.
+fn is_quick(word: &str) -> Result<(), Failure> {
+    let shape = word.strip_prefix("--shape=");
+    if let Some(shape) = shape.filter(|shape| !["circle", "line"].contains(shape)) {
+        let message = format!("shape is circle or line; it is {shape}; pictures are the terminal's");
+        return Err(Failure::usage("usage", message));
+    }
+    for (flag, most) in COUNTS {
+        let count = word.strip_prefix(&format!("--{flag}=")).and_then(|count| count.parse::<f64>().ok());
+        if let Some(count) = count.filter(|&count| count > f64::from(most)) {
+            let message = format!(
+                "{flag} is {most} at most in the studio; it is {count}; more take minutes: tracelight lab montecarlo --{flag} {count}"
+            );
+            return Err(Failure::usage("usage", message));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses what is no formula, and could be a file's name: that has a letter behind a dot, as no number does.
@@ -96,26 +195,79 @@ impl Desk {
     /// What is wrong with it; what the program says.
     pub(crate) fn experiment(&self, asked: &Experiment) -> Result<Value, Failure> {
         let command = asked.command(&self.known_rigs())?;
+        let kind = asked.kind()?;
         let work = self.work();
-        let plot = self.folder.plot(work.id);
-        let at = 2.min(command.len());
+        let (plot, made) = (self.folder.plot(work.id), self.folder.made(work.id));
+        let at = 1 + kind.name.split(' ').count();
         let with = |more: &[&str]| -> Vec<String> {
             let more = more.iter().map(|&word| word.to_owned());
             command[..at].iter().cloned().chain(more).chain(command[at..].iter().cloned()).collect()
         };
-        let to = plot.to_string_lossy();
-        let figures =
-            self.program.perform(&with(&["--json", "--quiet", "-o", &to]), None, (&*work, &work.stop));
-        let svg = fs::read_to_string(&plot).unwrap_or_default();
+        let to = if kind.makes_rig { &made } else { &plot }.to_string_lossy();
+        let out = ["--out", &to];
+        let figures = self.program.perform(
+            &with(&[&["--json", "--quiet"], &out[..]].concat()),
+            None,
+            (&*work, &work.stop),
+        );
+        let words = figures.is_ok().then(|| {
+            // a folder is written anew, a plot is there
+            let again: &[&str] = if kind.makes_rig { &out } else { &[] };
+            self.program.perform(&with(&[&["--quiet"], again].concat()), None, (&*work, &work.stop))
+        });
+        let svg = fs::read_to_string(if kind.makes_rig { made.join("tune.svg") } else { plot.clone() });
+        let rig = fs::read_to_string(made.join("rig.toml")).ok();
         // what cannot be removed is written over another time
         let _ = fs::remove_file(&plot);
-        let figures = figures?;
-        let words = self.program.perform(&with(&["--quiet"]), None, (&*work, &work.stop))?;
+        let _ = fs::remove_dir_all(&made);
+        let (figures, words) = (figures?, words.transpose()?);
         let answer: Value = serde_json::from_str(&figures.json).unwrap_or(Value::Null);
+        if kind.of == Subject::Lesson && figures.failure.is_none() && asked.flags.contains_key("answer") {
+            self.folder.passed(asked.of.first().map_or("", String::as_str))?;
+        }
+        // where its files were is nobody's to know
+        let words = words.map_or_else(String::new, |words| words.text);
+        let words: Vec<&str> = words.lines().filter(|line| !line.contains(&*to)).collect();
         Ok(json!({
-            "command": typed(&command), "answer": answer, "words": words.text, "svg": svg,
+            "command": typed(&command), "answer": answer, "words": words.join("\n").trim_end(), "svg": svg.unwrap_or_default(), "rig": rig,
             "failure": figures.failure.as_ref().map(failure_json),
         }))
+    }
+
+    /// The lessons whose questions were answered rightly.
+    pub(crate) fn lessons(&self) -> Value {
+        json!({ "passed": self.folder.lessons_passed() })
+    }
+}
+
+impl Folder {
+    /// A place for the folder of an experiment, of this process alone.
+    fn made(&self, number: u64) -> PathBuf {
+        self.dir().join(format!(".lab-{}-{number}", std::process::id()))
+    }
+
+    fn lessons(&self) -> PathBuf {
+        self.dir().join("lessons.json")
+    }
+
+    /// Numbers of the lessons that were passed; none where that is not known.
+    fn lessons_passed(&self) -> Vec<u32> {
+        let text = fs::read_to_string(self.lessons()).unwrap_or_default();
+        let kept: Value = serde_json::from_str(&text).unwrap_or_default();
+        let numbers = kept["passed"].as_array().into_iter().flatten();
+        numbers.filter_map(|number| u32::try_from(number.as_u64()?).ok()).collect()
+    }
+
+    /// Takes note of a lesson that was passed.
+    fn passed(&self, lesson: &str) -> Result<(), Failure> {
+        let mut all = self.lessons_passed();
+        let Ok(number) = lesson.parse() else { return Ok(()) };
+        if all.contains(&number) {
+            return Ok(());
+        }
+        all.push(number);
+        all.sort_unstable();
+        files::write(&self.lessons().to_string_lossy(), json!({ "passed": all }).to_string())
     }
 }
 
@@ -134,9 +286,18 @@ mod tests {
             of(bode).unwrap(),
             ["lab", "bode", "--closed", "--rig=report", "--", "K11*G11", "-1.5/(s+.5)"]
         );
+        let design = json!({ "command": "design pid", "of": ["G11"], "flags": { "crossover": "60rad/s" } });
+        assert_eq!(of(design).unwrap(), ["lab", "design", "pid", "--crossover=60rad/s", "--", "G11"]);
         for (asked, why) in [
             (json!({ "command": "bodee" }), "did you mean bode?"),
-            (json!({ "command": "tune" }), "is no experiment of the studio"),
+            (json!({ "command": "identify" }), "is no experiment of the studio"),
+            (json!({ "command": "montecarlo", "flags": { "plants": 100_000 } }), "500 at most"),
+            (
+                json!({ "command": "montecarlo", "flags": { "shape": "/etc/x.png" } }),
+                "shape is circle or line",
+            ),
+            (json!({ "command": "tune", "flags": { "out": "/tmp/x" } }), "out is no flag"),
+            (json!({ "command": "tune", "flags": { "save": true } }), "save is no flag"),
             (json!({ "command": "bode", "of": ["/etc/x.toml"] }), "is no formula"),
             (json!({ "command": "bode", "of": ["G11", "a.mat:G"] }), "is no formula"),
             (

@@ -52,6 +52,7 @@ pub(crate) fn router(house: House, door: Door) -> Router {
         .route("/live", get(live))
         .route("/head", post(move_head))
         .route("/lab", post(lab))
+        .route("/lab/lessons", get(lessons))
         .route("/stop", post(stop))
         .route("/session", get(session::told))
         .route("/session/join", post(session::join))
@@ -286,6 +287,10 @@ async fn lab(
     })
     .await
     .map(Json)
+}
+
+async fn lessons(State(desk): Shared) -> Result<Json<Value>, Refused> {
+    beside(move || Ok(desk.lessons())).await.map(Json)
 }
 
 /// Never refused, whatever is sent with it.
