@@ -61,7 +61,7 @@ fn ways_out(placed: &Placed, driving: &Driving) -> String {
 }
 
 fn metres(m: f64) -> String {
-    format!("{}m", 1e-3 * (1e3 * m).round())
+    format!("{}m", (1e3 * m).round() / 1e3)
 }
 
 /// How far a drawing reaches about its centre.
@@ -141,6 +141,7 @@ mod tests {
             assert!((rounded(m, f64::floor) - down).abs() < 1e-9, "{m}");
             assert!((rounded(m, f64::ceil) - up).abs() < 1e-9, "{m}");
         }
+        assert_eq!([metres(rounded(8.6249, f64::floor)), metres(2.77)], ["8.62m", "2.77m"]);
     }
 
     #[test]

@@ -2,8 +2,8 @@
 /** Areas of the wall that are never lit: listed, drawn, and shown hatched. */
 
 import { by, element } from './dom.js'
-import { origin, ways } from './place.js'
-import { listed, typed } from './words.js'
+import { areaOf } from './place.js'
+import { listed } from './words.js'
 
 /**
  * @typedef {import('./api.js').Flags} Flags
@@ -73,10 +73,7 @@ export class Dark {
         const [left, right] = [Math.min(from[0], at[0]), Math.max(from[0], at[0])]
         const [low, top] = [Math.min(from[1], at[1]), Math.max(from[1], at[1])]
         if (Math.min(right - left, top - low) * wall.view.scale < LEAST) return
-        const flags = this.hooks.flags()
-        const [[to_right, to_up], [x, y]] = [ways(flags), origin(flags)]
-        const near = [to_right > 0 ? left - x : x - right, to_up > 0 ? low - y : y - top, right - left, top - low]
-        this.#change([...this.#all(), near.map(typed).join(',')])
+        this.#change([...this.#all(), areaOf([left, low, right, top], this.hooks.flags())])
       },
       cancelled: () => this.#over(),
     })

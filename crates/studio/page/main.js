@@ -13,7 +13,7 @@ import { figures, noFigures } from './figures.js'
 import { keep, kept, themes, units } from './kept.js'
 import { Marks } from './marks.js'
 import { Pictures } from './pictures.js'
-import { boxOf, flagsOf, planned } from './place.js'
+import { boxOf, flagsOf, measuredAnew, planned } from './place.js'
 import { Runs, follow, showResult } from './runs.js'
 import { Run } from './run.js'
 import { Store, essence } from './store.js'
@@ -53,7 +53,8 @@ const wall = new Wall(by('wall'), (box, done) => {
   else fields.show({ ...store.asked.flags, ...flags })
 })
 const timeline = new Timeline({ range: by('time'), play: by('play'), clock: by('clock'), rate: by('rate') }, (row) => wall.at(row))
-const fields = new Fields(by('fields'), (flags) => store.flags(flags))
+// what is measured from another corner lies where it lay
+const fields = new Fields(by('fields'), (flags) => store.flags('from' in flags ? { ...measuredAnew(store.asked.flags, { ...store.asked.flags, ...flags }, wall.box), ...flags } : flags))
 const beneath = new Beneath(by('beneath'), wall)
 const onWall = {
   flags: () => store.asked.flags,
@@ -71,16 +72,14 @@ fields.part('width').after(by('marks'), by('dark'))
 fields.part('straighten').append(by('show-corners'))
 by('pointed').addEventListener('click', () => wall.cancel())
 
-/** What was asked for when this page was last left; of one that comes new, what was placed last, here or on another device. @returns {import('./store.js').Asked} */
+/** What was asked for when this page was last left, else what was placed last, here or on another device. @returns {import('./store.js').Asked} */
 function earlier() {
   const asked = kept('sessionStorage', 'asked')
   return asked ? JSON.parse(asked) : (session?.last ?? { picture: 'house.png', flags: {} })
 }
 
 /** Where the drawing is to be by its flags. @param {api.Flags} flags @returns {import('./wall.js').Box} */
-function lies(flags) {
-  return plan ? boxOf(flags, planned(plan), planFlags) : NOWHERE
-}
+const lies = (flags) => (plan ? boxOf(flags, planned(plan), planFlags) : NOWHERE)
 
 /** Where it was dragged, as flags. @param {import('./wall.js').Box} box */
 const placed = (box) => flagsOf(box, lies(store.asked.flags), store.asked.flags)
@@ -202,9 +201,8 @@ function show(made, points, flags) {
   details(made.plan)
   timeline.of(points.rows, made.plan.plan.duration_s)
   figures(made)
-  const remarks = by('remarks')
-  remarks.hidden = made.remarks.length === 0
-  remarks.querySelector('ul')?.replaceChildren(...made.remarks.map((remark) => element('li', { text: asLabelled(remark) })))
+  by('remarks').hidden = made.remarks.length === 0
+  by('remarks').querySelector('ul')?.replaceChildren(...made.remarks.map((remark) => element('li', { text: asLabelled(remark) })))
 }
 
 /** Tells what went wrong with what is on the wall; null for nothing. @param {unknown} error */
@@ -308,6 +306,7 @@ function choose(picture, flags) {
   const next = { picture, flags: flags ?? { ...(distance ? { distance } : {}), ...(rig ? { rig } : {}) } }
   if (next.picture === store.asked.picture && essence(next.flags) === essence(store.asked.flags)) return
   problem(null)
+  wall.cancel()
   nothing()
   wall.first = true
   run.anew()
@@ -327,7 +326,7 @@ function view() {
   document.body.classList.toggle('looks-on', !operates)
   by('fields').toggleAttribute('inert', !operates)
   wall.fixed = attends || !operates
-  wall.dirty = true
+  wall.cancel()
   const current = is === 'compare' ? 'runs' : is
   for (const id of ['place', 'run', 'runs', 'lab', 'rigs', 'devices']) {
     if (id === current) by(`to-${id}`).setAttribute('aria-current', 'page')

@@ -59,8 +59,8 @@ export class Pictures {
     for (const button of by('pictures').querySelectorAll('button.picture')) {
       const is = /** @type {HTMLElement} */ (button).title === chosen
       button.setAttribute('aria-pressed', String(is))
-      const strip = button.closest('.pictures')
-      if (is && strip && strip.clientWidth > 0) strip.scrollLeft = Math.max(0, /** @type {HTMLElement} */ (button).offsetLeft - strip.clientWidth / 2)
+      const strip = by('pictures')
+      if (is && strip.clientWidth > 0) strip.scrollLeft = Math.max(0, /** @type {HTMLElement} */ (button).offsetLeft - strip.offsetLeft - strip.clientWidth / 2)
     }
   }
 

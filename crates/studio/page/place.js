@@ -76,6 +76,44 @@ export function flagsOf(box, is, flags) {
   return change
 }
 
+/** What is measured from another corner of the wall from now on, and stays where it is: offset, marks and areas. @param {Flags} was @param {Flags} flags with the other corner @param {Box} box where the drawing lies @returns {Flags} */
+export function measuredAnew(was, flags, box) {
+  /** @type {Flags} */
+  const change = {}
+  const place = (/** @type {string} */ text) => {
+    const lengths = offset(text)
+    const [[right, up], [x, y]] = [ways(was), origin(was)]
+    return lengths && told([x + right * lengths[0], y + up * lengths[1]], flags)
+  }
+  const marks = listed(was.align)
+  if (marks.length > 0) {
+    change.align = marks.map((mark) => {
+      const [at, to] = mark.split('=')
+      const anew = place(to ?? '')
+      return anew === null ? mark : `${at}=${anew}`
+    })
+  } else if (flags.from || was.offset) {
+    const at = told(corner(box, flags), flags)
+    change.offset = offset(at)?.every((m) => m === 0) ? '' : at
+  }
+  if (listed(was.no_go).length > 0) {
+    change.no_go = listed(was.no_go).map((area) => {
+      const [x, y, wide, high] = area.split(',').map(metres)
+      if (x == null || y == null || wide == null || high == null) return area
+      const [[right, up], [from_x, from_y]] = [ways(was), origin(was)]
+      const [left, low] = [from_x + right * x - (right < 0 ? wide : 0), from_y + up * y - (up < 0 ? high : 0)]
+      return areaOf([left, low, left + wide, low + high], flags)
+    })
+  }
+  return change
+}
+
+/** An area of the wall as the program reads it. @param {[number, number, number, number]} of left, low, right, top, m @param {Flags} flags */
+export function areaOf([left, low, right, top], flags) {
+  const [[to_right, to_up], [x, y]] = [ways(flags), origin(flags)]
+  return [to_right > 0 ? left - x : x - right, to_up > 0 ? low - y : y - top, right - left, top - low].map(typed).join(',')
+}
+
 /** A mark that belongs so much further away; one by angles stays where the head was. @param {string} mark @param {number} dx @param {number} dy */
 function shifted(mark, dx, dy) {
   const [at, to] = mark.split('=')

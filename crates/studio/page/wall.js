@@ -436,7 +436,7 @@ export class Wall {
   /** @param {PointerEvent} event */
   #go(event) {
     const at = /** @type {[number, number]} */ ([event.offsetX, event.offsetY])
-    if (this.tool) this.tool.to(this.toPlace(at))
+    if (this.tool && (!this.drag || this.drag.kind === 'tool')) this.tool.to(this.toPlace(at))
     if (!this.drag) {
       this.dirty ||= this.tool !== null
       this.canvas.dataset.under = this.#under(at)

@@ -1,6 +1,6 @@
 """A crowd looks at a run of the studio: python3 crowd.py PROGRAM SECONDS CLIENTS [MINUTES]
 
-One page operates a job by the clock; the others have a socket each, and one of them reads nothing at all. Told are the ticks that came late, with the crowd and without,
+One page operates a job by the clock; the others have a socket each, and one of them reads nothing at all. Told are the ticks that came late, with the crowd and without, how long a stop takes,
 and, over MINUTES of further runs and plans, how much memory the program takes. Nothing but Python's own library is needed.
 """
 
@@ -16,6 +16,10 @@ import tempfile
 import threading
 import time
 import urllib.request
+
+
+# how often a run is stopped
+STOPS = 100
 
 
 class Line:
@@ -130,6 +134,39 @@ def attended(studio, seconds, readers, stalled):
     return round(1000 * told["t_s"]), told["late_ticks"], told["latest_ms"]
 
 
+def stopped(studio, trials):
+    """Stops a lit run by a click's request, again and again: ms from the request to the state that a page is told, which is after the rig's."""
+    mine = Line(studio.port, "mine")
+    studio.ask("/jobs", {"picture": "house.png", "page": "mine", "attended": True, "flags": {"width": "3m", "distance": "4m", "speed": "10cm/s", "real_time": "1"}})
+    took, asked, here, wished = [], None, 0.0, 0.0
+    while len(took) < trials:
+        now = time.monotonic()
+        if now - here > 0.3:
+            here = now
+            mine.say({"here": True})
+        event = mine.hear()
+        now = time.monotonic()
+        if event is None:
+            continue
+        assert event["event"] != "over", event
+        if event["event"] == "state" and asked and event["to"] not in ("tracing", "armed"):
+            took.append(1000 * (now - asked))
+            asked = None
+        if event["event"] == "progress" and asked is None and now - wished > 0.25:
+            if event["state"] == "tracing" and event["gate"]:
+                asked = time.monotonic()
+                studio.ask("/stop", {})
+            elif event["state"] in ("armed", "paused"):
+                wished = now
+                mine.say({"wish": "go-on"})
+            else:
+                wished = now
+                mine.say({"wish": "arm"})
+    mine.say({"wish": "end"})
+    mine.socket.close()
+    return sorted(took)
+
+
 def main():
     program, seconds, clients = sys.argv[1], float(sys.argv[2]), int(sys.argv[3])
     minutes = float(sys.argv[4]) if len(sys.argv) > 4 else 0
@@ -139,6 +176,8 @@ def main():
             for name, readers, stalled in [("nobody looks on", 0, False), (f"{clients} look on, one of them stalled", clients - 1, True)]:
                 ticks, late, latest = attended(studio, seconds, readers, stalled)
                 print(f"{name}: of {ticks} ticks {late} came more than 1 ms late ({100 * late / ticks:.3f} %), the latest {latest:.1f} ms", flush=True)
+            took = stopped(studio, STOPS)
+            print(f"stopped {STOPS} times: {took[STOPS // 2]:.1f} ms in the middle, {took[int(0.99 * STOPS)]:.1f} ms in 99 of 100, {took[-1]:.1f} ms at most")
             began, least, most = time.monotonic(), None, None
             while time.monotonic() < began + 60 * minutes:
                 attended(studio, 20, clients - 1, True)
