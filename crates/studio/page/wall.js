@@ -132,7 +132,8 @@ export class Wall {
     const corners = this.#corners(this.box)
     const [xs, ys] = [corners.map(([x]) => x), corners.map(([, y]) => y)]
     const [left, right, low, top] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)]
-    const margin = Math.min(MARGIN, 0.1 * wide)
+    // what is drawn has no handles around it
+    const margin = Math.min(MARGIN, 0.1 * wide, this.fixed ? 0.06 * high : MARGIN)
     const room = (/** @type {number} */ pixels) => Math.max(40, pixels - 2 * margin - RULER)
     this.view.scale = Math.min(room(wide) / (right - left), room(high) / (top - low))
     this.view.x = (left + right) / 2 - RULER / 2 / this.view.scale
