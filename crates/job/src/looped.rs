@@ -1,6 +1,6 @@
 //! What is drawn again and again.
 
-use tracelight_pipeline::{Driving, Schedule, schedule_rest};
+use tracelight_pipeline::{Driving, Schedule, schedule_as_it_is};
 use tracelight_session::{Again, Job, Repeated, StrokeTicks};
 use tracelight_sim::looped_job;
 use tracelight_stroke::{Drawing, Path, Place, Stroke};
@@ -89,7 +89,7 @@ impl Looped {
     /// Why it cannot be drawn so.
     pub(crate) fn of(item: &Item, of: u32, driving: &Driving, dry: bool) -> Result<Self, Failure> {
         let drawing = Drawing { strokes: item.strokes.clone() };
-        let Schedule { plan: once, .. } = schedule_rest(drawing.clone(), driving)?;
+        let Schedule { plan: once, .. } = schedule_as_it_is(drawing.clone(), driving)?;
         let end = once.points.last().map(|point| point.joints.map(|joint| joint.position_rad));
         let again = plan_from(&drawing, &driving.machine, &driving.request, end.unwrap_or_default())
             .map_err(tracelight_pipeline::refused)?;

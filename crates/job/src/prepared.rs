@@ -5,7 +5,8 @@ use tracelight_eye::room::{Furnished, left};
 use tracelight_eye::seen::SeenLight;
 use tracelight_picture::{Raster, Source};
 use tracelight_pipeline::{
-    Before, Check, Driving, Placed, Schedule, Sketch, place, preflight, schedule, schedule_rest, sketch,
+    Before, Check, Driving, Placed, Schedule, Sketch, place, preflight, schedule, schedule_as_it_is,
+    schedule_rest, sketch,
 };
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_sim::{LightFrom, Observed as _, Origin, RigConfig, Run, SimulatedRig};
@@ -180,7 +181,9 @@ impl Prepared {
         let before = number as usize - 1;
         let rest = Drawing { strokes: strokes[before * of_one..].to_vec() };
         self.placed.points.drain(..before.min(points));
-        self.schedule = schedule_rest(rest, &self.driving)?;
+        // a mark is so many strokes
+        let schedule = if points > 0 { schedule_as_it_is } else { schedule_rest };
+        self.schedule = schedule(rest, &self.driving)?;
         self.first = number - 1;
         Ok(self)
     }
@@ -258,7 +261,7 @@ impl Prepared {
         if let Some(pace_m_s) = pace_m_s {
             driving.request.speed_m_s = pace_m_s;
             // one that cannot be drawn so is left out on the way; the rest stays as it was planned
-            if let Ok(paced) = schedule_rest(schedule.ordered.drawing.clone(), driving) {
+            if let Ok(paced) = schedule_as_it_is(schedule.ordered.drawing.clone(), driving) {
                 schedule.plan = paced.plan;
             }
         }

@@ -38,10 +38,13 @@ pub fn schedule(placed: &Placed, driving: &Driving) -> Result<Schedule, Failure>
     hopeless::check(&placed.drawing, driving)?;
     if !placed.points.is_empty() {
         // in the order that they have; no speed is reached on lines that short
-        return schedule_rest(placed.drawing.clone(), driving);
+        return schedule_as_it_is(placed.drawing.clone(), driving);
     }
-    let may_put_off = driving.order.sequence == Sequence::Free;
-    let schedule = timed(ordered(placed, driving), may_put_off, driving)?;
+    let spreading = match driving.order.sequence {
+        Sequence::Free => Spreading::Anywhere,
+        _ => Spreading::InOrder,
+    };
+    let schedule = timed(ordered(placed, driving), spreading, driving)?;
     check_speed(&schedule.plan, driving)?;
     Ok(schedule)
 }
@@ -52,20 +55,39 @@ pub fn schedule(placed: &Placed, driving: &Driving) -> Result<Schedule, Failure>
 /// As of [`schedule`], but that no speed is too fast for it: its longest stroke may be drawn.
 pub fn schedule_rest(drawing: Drawing, driving: &Driving) -> Result<Schedule, Failure> {
     let cost = TravelTime::new(&driving.machine, &driving.request);
-    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), false, driving)
+    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), Spreading::InOrder, driving)
+}
+
+/// Times strokes in the order that they have, and none of them in parts: what knows them by their numbers goes on doing so.
+///
+/// # Errors
+/// As of [`schedule_rest`]; `standing-light` where the light would stand.
+pub fn schedule_as_it_is(drawing: Drawing, driving: &Driving) -> Result<Schedule, Failure> {
+    let cost = TravelTime::new(&driving.machine, &driving.request);
+    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), Spreading::Never, driving)
+}
+
+/// How light that would stand may be spread in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Spreading {
+    /// By drawing strokes later, in parts, and after dark rests.
+    Anywhere,
+    /// In parts and after dark rests.
+    InOrder,
+    Never,
 }
 
 /// Times strokes. Where the light would stand it is spread in time, if that is enough.
-fn timed(ordered: Ordered, may_put_off: bool, driving: &Driving) -> Result<Schedule, Failure> {
+fn timed(ordered: Ordered, spreading: Spreading, driving: &Driving) -> Result<Schedule, Failure> {
     let plan = plan(&ordered.drawing, &driving.machine, &driving.request).map_err(refused)?;
     let Some(stands) = first_standing(&driving.rig, &plan) else {
         return Ok(Schedule { ordered, plan, notes: Vec::new() });
     };
     // what passes all its strokes at speed begins none of them from rest
     let may_rest = driving.request.lit_speed != LitSpeed::Exact;
-    for share in SHARES {
+    for share in SHARES.into_iter().filter(|_| spreading != Spreading::Never) {
         let Some(Spread { drawing, waits, cut, parts }) =
-            spread((&ordered.drawing, &plan), &driving.rig, share, may_put_off)
+            spread((&ordered.drawing, &plan), &driving.rig, share, spreading == Spreading::Anywhere)
         else {
             break;
         };

@@ -87,7 +87,7 @@ pub(crate) fn spread(
             continue;
         }
         // another one may need no rest
-        if let Some(at) = (0..later.len()).find(|&at| course.takes(&later[at])) {
+        if let Some(at) = (0..later.len().min(LOOKED_AT)).find(|&at| course.takes(&later[at])) {
             later.remove(at);
             later.push_front(part);
             continue;
@@ -252,7 +252,7 @@ mod tests {
     use crate::driving::{Asked, Driving, request_of};
     use crate::ordering::Sequence;
     use crate::placed::Placed;
-    use crate::schedule::{Schedule, schedule};
+    use crate::schedule::{Schedule, schedule, schedule_as_it_is, schedule_rest};
 
     fn driving() -> Driving {
         let rig = RigConfig::report();
@@ -329,6 +329,21 @@ mod tests {
         let names: Vec<_> =
             ordered.drawing.strokes.iter().map(|stroke| stroke.layer.clone().unwrap()).collect();
         assert!(names.is_sorted() && names.len() > 3, "{names:?}");
+    }
+
+    #[test]
+    fn strokes_that_are_known_by_their_numbers_are_not_cut() {
+        let driving = driving();
+        let drawing = Drawing { strokes: vec![scribble(60)] };
+        let refused = schedule_as_it_is(drawing.clone(), &driving).map(|_| ()).unwrap_err();
+        assert_eq!(refused.code, "standing-light");
+        let parts = schedule_rest(drawing, &driving).unwrap().ordered.drawing.strokes;
+        assert!(parts.len() > 1);
+        // what is left of what was cut is planned again as it is, with its rests
+        let rest = Drawing { strokes: parts[1..].to_vec() };
+        let again = schedule_rest(rest.clone(), &driving).unwrap();
+        assert_eq!(first_standing(&driving.rig, &again.plan), None);
+        assert!((length_m(&again.ordered.drawing.strokes) - length_m(&rest.strokes)).abs() < 1e-7);
     }
 
     #[test]
