@@ -1,5 +1,5 @@
 // A browser uses the studio: node studio.mjs ADDRESS PICTURE [ADDRESS], of one that was just opened on an empty folder, and of one for a board that was just powered up.
-// The first minute by one click, dragging, typing, undoing, a wrong value, what is no picture, a picture from a file, stopping from within a field; at three widths, on each ground, nothing
+// The first minute by one click, marks and areas on the wall, a camera and its calibration, dragging, typing, undoing, a wrong value, what is no picture, a picture from a file, stopping from within a field; at three widths, on each ground, nothing
 // axe finds wrong, nothing wider than the screen, no error of a script, nothing asked of anybody else; somebody attends a job, is lost, goes on with an old one, and joins from a phone.
 import { readFileSync } from 'node:fs'
 import { createRequire } from 'node:module'
@@ -23,7 +23,14 @@ const opened = async (width, height, options = {}) => {
   return page
 }
 const value = (page, name) => page.inputValue(`[name=${name}]`)
-const until = async (page, what, holds) => page.waitForFunction(holds, null, { timeout: 10000 }).catch(() => complaints.push(what))
+// what is not there yet does not hold yet
+const until = async (page, what, holds) => page.waitForFunction(text => {
+  try {
+    return new Function(`return ${text}`)()
+  } catch {
+    return false
+  }
+}, typeof holds === 'string' ? holds : `(${holds})()`, { timeout: 10000 }).catch(() => complaints.push(what))
 
 const firstMinute = async () => {
   const page = await opened(1280, 800), began = Date.now()
@@ -486,14 +493,52 @@ const rigs = async () => {
   await page.context().close()
 }
 
+// A camera in a simulated room: what it sees, calibrated, held against that, the head found, drawn over what it sees, and asked for again; a head by corners.
+const cameras = async () => {
+  const page = await opened(1280, 900)
+  await page.goto(address + '#cameras')
+  await until(page, 'the pages are not seen', () => document.querySelectorAll('#seen-pages .met').length === 4)
+  const pdf = await page.request.get(new URL(await page.getAttribute('#print', 'href'), address).href)
+  check(pdf.ok() && (await pdf.body()).subarray(0, 5).toString() === '%PDF-', 'no pages to be printed')
+  await page.click('#calibrate')
+  await until(page, 'the camera is not calibrated', () => /simulated.toml: Great/.test(document.getElementById('calibrated').textContent))
+  await until(page, 'it is not held against that', () => /the calibration holds/.test(document.getElementById('seen-words').textContent))
+  await page.click('#find-head')
+  await until(page, 'the head is not found', () => document.querySelectorAll('#known-heads li').length === 1)
+  await page.click('#known-heads button')
+  await until(page, 'a calibration is not deleted', () => document.querySelectorAll('#known-heads li').length === 0)
+  await page.click('#calibration-deleted button')
+  await until(page, 'a calibration is not had back', () => document.querySelectorAll('#known-heads li').length === 1)
+  await page.click('#place-seen')
+  await until(page, 'what it sees is not planned', () => /--camera=sim:.*house.png/.test(document.getElementById('command').textContent) && document.getElementById('count').textContent === '28')
+  await page.selectOption('[name=head]', 'simulated.toml')
+  await until(page, 'the head is not where it was found', () => /--head=.*simulated.toml/.test(document.getElementById('command').textContent) && !document.body.classList.contains('waits'))
+  await page.click('#trace')
+  await until(page, 'what it sees is not traced', () => /mm off at most/.test(document.getElementById('result').textContent))
+  await page.click('#to-runs')
+  await until(page, 'its run is not listed', () => /house-camera/.test(document.getElementById('run-list').textContent))
+  await page.click('[aria-label="Place again: house-camera"]')
+  await until(page, 'what it saw cannot be asked for again', () => /Camera: sim:house.png/.test(document.getElementById('name').textContent) && !document.body.classList.contains('waits'))
+  await page.goto(address + '#cameras=corners')
+  await page.check('#corners-simulate')
+  await page.fill('#corners-width', '3x')
+  await page.click('#find-corners')
+  await until(page, 'a wrong width is not told', () => /use one of m, mm, cm/.test(document.getElementById('cameras-problem').textContent))
+  await page.fill('#corners-width', '3m')
+  await page.click('#find-corners')
+  await until(page, 'no head is found by corners', () => /head.toml/.test(document.getElementById('corners-found').textContent))
+  await page.context().close()
+}
+
 const looks = async () => {
   for (const [width, height] of [[1280, 800], [820, 1100], [390, 844]]) {
     for (const theme of ['light', 'dark', 'room']) {
       const page = await opened(width, height)
       await page.evaluate(name => localStorage.setItem('theme', name), theme)
-      for (const view of ['', '#run', '#runs', '#compare=house,house-2', '#lab', '#lab=lesson-2', '#rigs=garage.toml', '#devices']) {
+      for (const view of ['', '#run', '#runs', '#compare=house,house-2', '#lab', '#lab=lesson-2', '#rigs=garage.toml', '#cameras', '#cameras=corners', '#devices']) {
+        // a page that is new
+        await page.goto('about:blank')
         await page.goto(address + view)
-        await page.reload()
         await page.waitForTimeout(400)
         if (view === '#devices') await page.click('#invite-viewer')
         await page.evaluate(axe)
@@ -516,6 +561,7 @@ await steps()
 await history()
 await lab()
 await rigs()
+await cameras()
 const far = await devices()
 if (process.argv[4]) await port(process.argv[4])
 await keys()

@@ -14,7 +14,7 @@ mod shown;
 mod source;
 mod stream;
 
-pub use devices::devices;
+pub use devices::{devices, named_devices};
 pub use looked::{NamedCamera, SeenCamera, camera_json, camera_text, look_at, look_at_all, no_camera_text};
 pub use shown::shown;
 pub use source::{Opened, Source};

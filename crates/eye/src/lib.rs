@@ -9,6 +9,7 @@
 //! | [`Eye`] | what sends shots by itself while a rig runs; [`Driven`], with a session that drives the rig |
 //! | [`board`] | pages of markers |
 //! | [`room`] | a simulated head and camera in front of a simulated wall |
+//! | [`sight`] | what one image tells before anything is measured by it |
 //! | [`wall`] | the camera found from markers in sight |
 //! | [`figure`] | the figure on the wall, as strokes |
 //! | [`spots`] | the laser's spot in shots, held against what the encoders said |
@@ -45,6 +46,7 @@ pub mod power;
 pub mod room;
 pub mod seen;
 mod shot;
+pub mod sight;
 pub mod spots;
 pub mod told;
 pub mod trim;

@@ -188,12 +188,20 @@ fn seen(tag: &Tag) -> SeenTag {
 /// # Errors
 /// The camera sends nothing; or [`Failure::interrupted`].
 pub fn well_exposed(eye: &mut dyn Looks, stop: &Stop) -> Result<Raster, Failure> {
-    let Some(longest_s) = eye.longest() else { return readable(eye, 0.0, stop).map(|taken| taken.0) };
+    well_exposed_for(eye, stop).map(|taken| taken.0)
+}
+
+/// Likewise, and how long its rows were exposed, s.
+///
+/// # Errors
+/// As of [`well_exposed`].
+pub fn well_exposed_for(eye: &mut dyn Looks, stop: &Stop) -> Result<(Raster, f64), Failure> {
+    let Some(longest_s) = eye.longest() else { return readable(eye, 0.0, stop) };
     let mut exposure_s = 0.5 * longest_s;
     // the longest that was too dark, and the shortest that was too bright
     let (mut dark_s, mut bright_s) = (0.0, f64::INFINITY);
     let (pixels, mut exposed_s) = readable(eye, exposure_s, stop)?;
-    let mut best = (brightest(&pixels), pixels);
+    let mut best = (brightest(&pixels), pixels, exposed_s);
     let mut brightest_now = best.0;
     for _ in 1..MOST_SHOTS {
         if (WELL_EXPOSED[0]..=WELL_EXPOSED[1]).contains(&brightest_now) {
@@ -217,10 +225,10 @@ pub fn well_exposed(eye: &mut dyn Looks, stop: &Stop) -> Result<Raster, Failure>
         let taken = readable(eye, exposure_s, stop)?;
         (exposed_s, brightest_now) = (taken.1, brightest(&taken.0));
         if worth(brightest_now) > worth(best.0) {
-            best = (brightest_now, taken.0);
+            best = (brightest_now, taken.0, exposed_s);
         }
     }
-    Ok(best.1)
+    Ok((best.1, best.2))
 }
 
 /// The next exposure that is tried after one that was too dark or too bright, s.
@@ -240,8 +248,11 @@ fn worth(brightest: u8) -> i32 {
     if brightest > WELL_EXPOSED[1] { -level } else { level }
 }
 
-/// The next image that can be decoded, and how long it was exposed, s.
-fn readable(eye: &mut dyn Looks, exposure_s: f64, stop: &Stop) -> Result<(Raster, f64), Failure> {
+/// The next image that can be decoded, and how long it was exposed, s: as long as is told, of a camera that can be.
+///
+/// # Errors
+/// The camera sends nothing, or nothing but spoilt images; or [`Failure::interrupted`].
+pub fn readable(eye: &mut dyn Looks, exposure_s: f64, stop: &Stop) -> Result<(Raster, f64), Failure> {
     const MOST_SPOILT: usize = 5;
     let mut spoilt = 0;
     loop {
@@ -253,6 +264,40 @@ fn readable(eye: &mut dyn Looks, exposure_s: f64, stop: &Stop) -> Result<(Raster
             Err(failure) if failure.code != "camera-image" || spoilt == MOST_SPOILT => return Err(failure),
             Err(_) => spoilt += 1,
         }
+    }
+}
+
+/// Whether an image can be measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exposed {
+    /// White is grey in it.
+    Dark,
+    /// As it should be.
+    Well,
+    /// White is lost in it.
+    Bright,
+}
+
+impl Exposed {
+    /// One word.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Dark => "dark",
+            Self::Well => "well",
+            Self::Bright => "bright",
+        }
+    }
+}
+
+/// How an image is exposed, by the level that a hundredth of its pixels exceed. Half the light of a well exposed one is enough for its markers.
+#[must_use]
+pub fn exposed(pixels: &Raster) -> Exposed {
+    const DARK: u8 = 110;
+    match brightest(pixels) {
+        level if level < DARK => Exposed::Dark,
+        u8::MAX => Exposed::Bright,
+        _ => Exposed::Well,
     }
 }
 

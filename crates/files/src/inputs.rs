@@ -18,6 +18,17 @@ pub fn protect(path: &Path) {
     }
 }
 
+/// Removes a file that was made to be read once, and is nobody's: another one of its name may be written.
+///
+/// # Errors
+/// What the system says.
+pub fn remove_read(path: &Path) -> std::io::Result<()> {
+    if let Ok(real) = fs::canonicalize(path) {
+        INPUTS.lock().unwrap_or_else(PoisonError::into_inner).remove(&real);
+    }
+    fs::remove_file(path)
+}
+
 /// The files that this process has read, by their real paths.
 #[must_use]
 pub fn inputs() -> Vec<PathBuf> {
@@ -64,6 +75,8 @@ mod tests {
             assert!(refused.message.contains("would be overwritten"), "{refused:?}");
         }
         assert_eq!(fs::read_to_string(&file).unwrap(), "a newer drawing");
+        remove_read(&file).unwrap();
+        write(&name, "another").unwrap();
         // a rig file with what was identified of it is meant to be replaced
         replace(&name, "saved").unwrap();
         assert_eq!(fs::read_to_string(&file).unwrap(), "saved");

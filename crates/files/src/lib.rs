@@ -8,7 +8,7 @@ mod typed;
 mod whole;
 
 pub use folder::ResultFolder;
-pub use inputs::{inputs, protect};
+pub use inputs::{inputs, protect, remove_read};
 pub use pictures::{Found, Picture, find, stands_for_several};
 pub use typed::in_text;
 pub use whole::{is_same, read, replace, write, written_whole};

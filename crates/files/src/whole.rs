@@ -5,6 +5,7 @@ use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Read;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use tracelight_task::Failure;
 
@@ -73,9 +74,10 @@ fn put(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     }
     let real =
         if old.is_some() { fs::canonicalize(path).map_err(failed)? } else { Path::new(path).to_owned() };
-    // a file may be written by two processes at once: each has a part of its own
+    // a file may be written by two at once, in one process or several: each has a part of its own
+    static PART: AtomicU64 = AtomicU64::new(0);
     let mut part = real.clone().into_os_string();
-    part.push(format!(".{}.new", std::process::id()));
+    part.push(format!(".{}-{}.new", std::process::id(), PART.fetch_add(1, Ordering::Relaxed)));
     renamed_when_whole(part.as_ref(), &real, failed, |part| {
         fs::write(part, bytes).map_err(failed)?;
         old.map_or(Ok(()), |old| fs::set_permissions(part, old.permissions()).map_err(failed))

@@ -1,7 +1,7 @@
 //! Somebody at the wall: what they ask, and what they are told.
 
 use tracelight_session::{Event, Refused, Request, Snapshot};
-use tracelight_stroke::Place;
+use tracelight_stroke::{Place, Point};
 
 /// What somebody at the wall asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +33,19 @@ impl Look {
             Self::Over => "over",
         }
     }
+}
+
+/// What a camera has seen of the light while it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    /// Where the spot was seen last, m on the target.
+    pub seen: Point,
+    /// Where it was asked to be then, m.
+    pub asked: Point,
+    /// How far the spot was off in the last images, at most twenty-five of them, m, root of the mean square.
+    pub rms_m: f64,
+    /// Images in which it was seen until now.
+    pub images: usize,
 }
 
 /// Which stroke comes next.
@@ -88,6 +101,9 @@ pub trait Hands {
 
     /// Told how a camera looks into what is suddenly off, in the dark or by dots: meanwhile nothing but to stop can be asked.
     fn looks(&mut self, _look: Look) {}
+
+    /// Told what a camera has seen of the light, some times a second.
+    fn sees(&mut self, _sighting: &Sighting) {}
 
     /// Whether they arm before the first light; otherwise who starts the job has done that.
     fn arms(&self) -> bool {

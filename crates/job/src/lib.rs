@@ -36,7 +36,7 @@ mod stretch;
 mod wall;
 mod watched;
 
-pub use hands::{Ask, Hands, Look, Nobody, Step};
+pub use hands::{Ask, Hands, Look, Nobody, Sighting, Step};
 pub use head::Head;
 pub use keep::{Keep, KeepNothing};
 pub use mover::{Jog, Mover, Place};

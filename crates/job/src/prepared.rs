@@ -6,7 +6,7 @@ use tracelight_eye::seen::SeenLight;
 use tracelight_picture::{Raster, Source};
 use tracelight_pipeline::{
     Before, Check, Driving, Placed, Schedule, Sketch, place, preflight, schedule, schedule_as_it_is,
-    schedule_rest, sketch,
+    schedule_rest, schedule_whole, sketch,
 };
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_sim::{LightFrom, Observed as _, Origin, RigConfig, Run, SimulatedRig};
@@ -182,7 +182,7 @@ impl Prepared {
         let rest = Drawing { strokes: strokes[before * of_one..].to_vec() };
         self.placed.points.drain(..before.min(points));
         // a mark is so many strokes
-        let schedule = if points > 0 { schedule_as_it_is } else { schedule_rest };
+        let schedule = if points > 0 { schedule_as_it_is } else { schedule_whole };
         self.schedule = schedule(rest, &self.driving)?;
         self.first = number - 1;
         Ok(self)

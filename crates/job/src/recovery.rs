@@ -8,12 +8,12 @@ use tracelight_eye::homing::home_again;
 use tracelight_eye::power::lost_power;
 use tracelight_eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
 use tracelight_eye::{Driven as _, Eye, Looks, PATIENCE_TICKS, Shot, refused};
-use tracelight_pipeline as pipeline;
+use tracelight_pipeline::schedule_whole;
 use tracelight_rig::{PanTilt, TICK_F64_S};
 use tracelight_session::{Request, State, When, seconds};
 use tracelight_stroke::{Drawing, Stroke};
 use tracelight_task::{Failure, Task};
-use tracelight_trajectory::{Plan, plan};
+use tracelight_trajectory::Plan;
 
 use crate::aside::Aside;
 use crate::watched::{MOST_RECOVERIES, REST_TICKS, Watched, Why};
@@ -214,7 +214,8 @@ impl Watched<'_> {
         );
         self.looking.stop.check()?;
         self.recovered(began_s, what, found.dots);
-        plan(left, &self.driving.machine, &self.driving.request).map_err(pipeline::refused)
+        // whole strokes: what is told of them goes by their numbers
+        schedule_whole(left.clone(), &self.driving).map(|schedule| schedule.plan)
     }
 
     /// By how much the spot had moved on what is left, in the mean, mm: of a head that is so and stands so, and whose joints were by so much further than

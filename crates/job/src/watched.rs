@@ -19,7 +19,7 @@ use tracelight_task::{Failure, Stop, Task};
 use tracelight_trajectory::Plan;
 
 use crate::diary::Diary;
-use crate::hands::Hands;
+use crate::hands::{Hands, Sighting};
 use crate::keep::{Keep, REST_TICKS as KEPT_TICKS};
 use crate::remainder::{join, left};
 use crate::seen::Seen;
@@ -127,6 +127,8 @@ pub(crate) struct Watched<'a> {
     pub(crate) figures: FollowFigures,
     pub(crate) keep: &'a mut dyn Keep,
     pub(crate) failed: Option<Failure>,
+    /// Tick at which was told last what the camera has seen, and how many images that were.
+    seen_told: (u32, usize),
     pub(crate) power: PowerWatch,
     /// The rig lost power.
     pub(crate) unpowered: bool,
@@ -167,6 +169,7 @@ pub(crate) fn run_watched<'a>(
         figures: FollowFigures { closed: !job.seen.open, ..FollowFigures::default() },
         keep,
         failed: None,
+        seen_told: (0, 0),
         power: PowerWatch::default(),
         unpowered: false,
         task,
@@ -296,6 +299,7 @@ impl Watched<'_> {
         self.strike(&tick);
         let suspicion = self.follower.tick(self.session.rig_mut(), &tick);
         self.tell_blindness();
+        self.tell_sight();
         self.log(&tick);
         if tick.telemetry.tick.is_multiple_of(256) {
             self.task.at(u64::from(tick.telemetry.plan_tick));
@@ -310,6 +314,23 @@ impl Watched<'_> {
         }
         self.listen();
         (tick, suspicion)
+    }
+
+    /// Tells whoever stands at the wall what the camera has seen since he was told last.
+    fn tell_sight(&mut self) {
+        /// How often, ticks; and of how many images an error is the mean.
+        const EACH: u32 = 200;
+        const LAST: usize = 25;
+        let (marks, (told, count)) = (&self.follower.marks, self.seen_told);
+        let Some(mark) = marks.last().filter(|_| marks.len() > count && self.now >= told + EACH) else {
+            return;
+        };
+        let last = &marks[marks.len().saturating_sub(LAST)..];
+        let sum: f64 = last.iter().map(|mark| mark.seen.distance_squared(mark.asked)).sum();
+        let rms_m = (sum / last.len() as f64).sqrt();
+        let sighting = Sighting { seen: mark.seen, asked: mark.asked, rms_m, images: marks.len() };
+        self.seen_told = (self.now, marks.len());
+        self.hands.sees(&sighting);
     }
 
     /// Whether the rig still has power at a tick; its ticks, counts and clock are others once it lost it.

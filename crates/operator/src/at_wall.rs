@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
-use tracelight_job::{Ask, Hands, Look, Step};
+use tracelight_job::{Ask, Hands, Look, Sighting, Step};
 use tracelight_pipeline::{Check, point_json, point_words};
 use tracelight_rig::TICK_F64_S;
 use tracelight_session::{
@@ -259,6 +259,15 @@ impl Hands for AtWall<'_> {
                 Look::Over => "the camera is done with it",
             });
         }
+    }
+
+    fn sees(&mut self, sighting: &Sighting) {
+        let Sighting { seen, asked, rms_m, images } = sighting;
+        let mm = |m: f64| 1e3 * m;
+        self.print(&json!({
+            "event": "seen", "x_mm": mm(seen.x), "y_mm": mm(seen.y), "asked_x_mm": mm(asked.x), "asked_y_mm": mm(asked.y),
+            "off_mm": mm(seen.distance(*asked)), "rms_mm": mm(*rms_m), "images": images,
+        }));
     }
 
     fn goes_to(&mut self, point: &Place, number: u32, of: u32) {

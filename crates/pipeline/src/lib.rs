@@ -47,7 +47,9 @@ pub use points::{PointMark, Points, TypedKinds, point_json, point_words};
 pub use preflight::{Before, Check, Verdict, preflight};
 pub use quality::QualityFigures;
 pub use refused::refused;
-pub use schedule::{Schedule, check_speed, check_standing, schedule, schedule_as_it_is, schedule_rest};
+pub use schedule::{
+    Schedule, check_speed, check_standing, schedule, schedule_as_it_is, schedule_rest, schedule_whole,
+};
 pub use sheet::{PaperSeen, Straight, clockwise, page};
 pub use sketch::{Sketch, sketch_at};
 pub use standing::{Standing, spot_radius_m};

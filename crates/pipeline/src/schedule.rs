@@ -4,7 +4,7 @@ use tracelight_sim::{Standing, first_standing};
 use tracelight_stroke::{
     Drawing, OrderOptions, Ordered, Point, Travel, order, order_by_layer, reading_order,
 };
-use tracelight_task::{Failure, counted};
+use tracelight_task::Failure;
 use tracelight_trajectory::{LitSpeed, Plan, TravelTime, plan, plan_waiting};
 
 use crate::driving::{Driving, REACHED};
@@ -13,7 +13,7 @@ use crate::ordering::{OrderBy, Sequence};
 use crate::placed::Placed;
 use crate::reach::check_reach;
 use crate::refused::refused;
-use crate::spread::{Spread, spread};
+use crate::spread::{May, Spread, spread};
 
 /// A drawing in order, and in time.
 #[derive(Clone, Debug)]
@@ -40,11 +40,11 @@ pub fn schedule(placed: &Placed, driving: &Driving) -> Result<Schedule, Failure>
         // in the order that they have; no speed is reached on lines that short
         return schedule_as_it_is(placed.drawing.clone(), driving);
     }
-    let spreading = match driving.order.sequence {
-        Sequence::Free => Spreading::Anywhere,
-        _ => Spreading::InOrder,
+    let may = match driving.order.sequence {
+        Sequence::Free => May::PutOff,
+        _ => May::Cut,
     };
-    let schedule = timed(ordered(placed, driving), spreading, driving)?;
+    let schedule = timed(ordered(placed, driving), Some(may), driving)?;
     check_speed(&schedule.plan, driving)?;
     Ok(schedule)
 }
@@ -55,7 +55,16 @@ pub fn schedule(placed: &Placed, driving: &Driving) -> Result<Schedule, Failure>
 /// As of [`schedule`], but that no speed is too fast for it: its longest stroke may be drawn.
 pub fn schedule_rest(drawing: Drawing, driving: &Driving) -> Result<Schedule, Failure> {
     let cost = TravelTime::new(&driving.machine, &driving.request);
-    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), Spreading::InOrder, driving)
+    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), Some(May::Cut), driving)
+}
+
+/// Times the rest of a drawing that was ordered and began to be drawn, each of its strokes whole and by its number; where its light would stand it is dark before.
+///
+/// # Errors
+/// As of [`schedule_rest`].
+pub fn schedule_whole(drawing: Drawing, driving: &Driving) -> Result<Schedule, Failure> {
+    let cost = TravelTime::new(&driving.machine, &driving.request);
+    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), Some(May::Rest), driving)
 }
 
 /// Times strokes in the order that they have, and none of them in parts: what knows them by their numbers goes on doing so.
@@ -64,43 +73,35 @@ pub fn schedule_rest(drawing: Drawing, driving: &Driving) -> Result<Schedule, Fa
 /// As of [`schedule_rest`]; `standing-light` where the light would stand.
 pub fn schedule_as_it_is(drawing: Drawing, driving: &Driving) -> Result<Schedule, Failure> {
     let cost = TravelTime::new(&driving.machine, &driving.request);
-    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), Spreading::Never, driving)
-}
-
-/// How light that would stand may be spread in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Spreading {
-    /// By drawing strokes later, in parts, and after dark rests.
-    Anywhere,
-    /// In parts and after dark rests.
-    InOrder,
-    Never,
+    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), None, driving)
 }
 
 /// Times strokes. Where the light would stand it is spread in time, if that is enough.
-fn timed(ordered: Ordered, spreading: Spreading, driving: &Driving) -> Result<Schedule, Failure> {
+fn timed(ordered: Ordered, may: Option<May>, driving: &Driving) -> Result<Schedule, Failure> {
     let plan = plan(&ordered.drawing, &driving.machine, &driving.request).map_err(refused)?;
     let Some(stands) = first_standing(&driving.rig, &plan) else {
         return Ok(Schedule { ordered, plan, notes: Vec::new() });
     };
     // what passes all its strokes at speed begins none of them from rest
     let may_rest = driving.request.lit_speed != LitSpeed::Exact;
-    for share in SHARES.into_iter().filter(|_| spreading != Spreading::Never) {
+    for (share, may) in SHARES.into_iter().filter_map(|share| Some((share, may?))) {
         let Some(Spread { drawing, waits, cut, parts }) =
-            spread((&ordered.drawing, &plan), &driving.rig, share, spreading == Spreading::Anywhere)
+            spread((&ordered.drawing, &plan), &driving.rig, share, may)
         else {
             break;
         };
         if !waits.is_empty() && !may_rest {
             break;
         }
-        let spread = plan_waiting(&drawing, &waits, &driving.machine, &driving.request).map_err(refused)?;
+        // one that lasts too long so would have to be drawn faster or larger in any case
+        let Ok(spread) = plan_waiting(&drawing, &waits, &driving.machine, &driving.request) else { break };
         if first_standing(&driving.rig, &spread).is_some() {
             continue;
         }
         let cost = TravelTime::new(&driving.machine, &driving.request);
         let notes = vec![spread_words(
             (cut, parts),
+            may == May::PutOff && drawing.strokes.len() > 1,
             waits.iter().map(|wait| wait.time_s).sum(),
             (spread.duration_s() - plan.duration_s()).max(0.0),
         )];
@@ -114,16 +115,21 @@ fn timed(ordered: Ordered, spreading: Spreading, driving: &Driving) -> Result<Sc
 }
 
 /// Words for light that was spread, and what that takes.
-fn spread_words((cut, parts): (usize, usize), dark_s: f64, longer_s: f64) -> String {
-    let cuts = match cut {
-        0 => String::new(),
-        _ => format!(", {} in {parts} parts", counted(cut, "stroke")),
-    };
-    let dark =
-        if dark_s > 0.0 { format!(", and it is dark for {dark_s:.1} s in between") } else { String::new() };
-    format!(
-        "so that the light stands nowhere for too long, strokes that lie close together are drawn at different times{cuts}{dark}: {longer_s:.1} s more in all"
-    )
+fn spread_words((cut, parts): (usize, usize), are_put_off: bool, dark_s: f64, longer_s: f64) -> String {
+    let done: Vec<String> = [
+        are_put_off.then(|| "strokes that lie close together are drawn at different times".to_owned()),
+        (cut > 0).then(|| {
+            format!(
+                "{} drawn in {parts} parts",
+                if cut == 1 { "1 stroke is".to_owned() } else { format!("{cut} strokes are") }
+            )
+        }),
+        (dark_s > 0.0).then(|| format!("it is dark for {dark_s:.1} s in between")),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    format!("so that the light stands nowhere for too long, {}: {longer_s:.1} s more in all", done.join(", "))
 }
 
 /// Where the beam falls at rest.

@@ -27,6 +27,8 @@ const WAIT_STEP: u32 = 100;
 const LOOKED_AT: usize = 12;
 /// More parts are no drawing any more.
 const MOST_PARTS: usize = 20_000;
+/// Nor is it one that is dark for longer by its rests, ticks: half an hour.
+const MOST_DARK: u32 = 1_800_000;
 
 /// A drawing whose light is spread, and where it is dark for how long.
 #[derive(Clone, Debug)]
@@ -53,15 +55,27 @@ struct Step<'a> {
     wait: u32,
 }
 
-/// Spreads the light of a drawing that was planned in its order, with a share of what a plan may use; strokes are put off only where they may. `None` where
-/// a spot stands by itself.
+/// What may be done with strokes so that their light stands nowhere; dark rests before them may always be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum May {
+    /// They are drawn later, and in parts.
+    PutOff,
+    /// They are drawn in parts, in their order.
+    Cut,
+    /// Each is drawn whole, in their order.
+    Rest,
+}
+
+/// Spreads the light of a drawing that was planned in its order, with a share of what a plan may use. `None` where a spot stands by itself, or what comes out
+/// would be no drawing any more.
 pub(crate) fn spread(
     (drawing, plan): (&Drawing, &Plan),
     rig: &RigConfig,
     share: f64,
-    may_put_off: bool,
+    may: May,
 ) -> Option<Spread> {
-    let mut course = Course { ahead: LightAhead::new(rig, share), steps: Vec::new() };
+    let mut course =
+        Course { ahead: LightAhead::new(rig, share), steps: Vec::new(), cuts: may != May::Rest, dark: 0 };
     let mut later: VecDeque<Part<'_>> = VecDeque::new();
     for part in whole_strokes(drawing, plan) {
         for at in (0..later.len().min(LOOKED_AT)).rev() {
@@ -71,8 +85,11 @@ pub(crate) fn spread(
         }
         let mut rest = part;
         while let Some(left) = course.begin(&rest) {
+            if course.is_too_long() {
+                return None;
+            }
             rest = left;
-            if may_put_off {
+            if may == May::PutOff {
                 later.push_back(rest);
                 break;
             }
@@ -83,6 +100,9 @@ pub(crate) fn spread(
         }
     }
     while let Some(part) = later.pop_front() {
+        if course.is_too_long() {
+            return None;
+        }
         if course.takes(&part) {
             continue;
         }
@@ -104,6 +124,10 @@ pub(crate) fn spread(
 struct Course<'a> {
     ahead: LightAhead,
     steps: Vec<Step<'a>>,
+    /// Whether strokes may be cut.
+    cuts: bool,
+    /// How long it is dark by its rests in all, ticks.
+    dark: u32,
 }
 
 impl<'a> Course<'a> {
@@ -117,8 +141,14 @@ impl<'a> Course<'a> {
         }
     }
 
+    /// Whether it is no drawing any more: in too many parts, or dark for longer than any job lasts.
+    fn is_too_long(&self) -> bool {
+        self.steps.len() > MOST_PARTS || self.dark > MOST_DARK
+    }
+
     fn push(&mut self, part: Part<'a>, wait: u32, ahead: LightAhead) {
         self.ahead = ahead;
+        self.dark += wait;
         self.steps.push(Step { part, wait });
     }
 
@@ -136,7 +166,7 @@ impl<'a> Course<'a> {
             }
             Err(tick) => tick,
         };
-        let Some((first, left)) = part.cut_before(tick) else { return Some(*part) };
+        let Some((first, left)) = part.cut_before(tick).filter(|_| self.cuts) else { return Some(*part) };
         match self.tried(&first, 0) {
             Ok(ahead) => self.push(first, 0, ahead),
             Err(_) => return Some(*part),
@@ -149,7 +179,7 @@ impl<'a> Course<'a> {
     fn after_rest(&mut self, part: &Part<'a>) -> Option<Part<'a>> {
         let (first, left) = match self.tried(part, MOST_WAIT) {
             Ok(_) => (*part, Part { points: &[], ..*part }),
-            Err(tick) => part.cut_before(tick)?,
+            Err(tick) => part.cut_before(tick).filter(|_| self.cuts)?,
         };
         let (mut least, mut most) = (0, MOST_WAIT / WAIT_STEP);
         while most - least > 1 {
@@ -168,9 +198,6 @@ impl<'a> Course<'a> {
 
     /// The strokes as they follow each other now.
     fn drawn(self, drawing: &Drawing) -> Option<Spread> {
-        if self.steps.len() > MOST_PARTS {
-            return None;
-        }
         let mut counts = vec![0_usize; drawing.strokes.len()];
         let mut waits = Vec::new();
         let mut strokes: Vec<Stroke> = Vec::new();
@@ -252,7 +279,7 @@ mod tests {
     use crate::driving::{Asked, Driving, request_of};
     use crate::ordering::Sequence;
     use crate::placed::Placed;
-    use crate::schedule::{Schedule, schedule, schedule_as_it_is, schedule_rest};
+    use crate::schedule::{Schedule, schedule, schedule_as_it_is, schedule_rest, schedule_whole};
 
     fn driving() -> Driving {
         let rig = RigConfig::report();
@@ -344,6 +371,15 @@ mod tests {
         let again = schedule_rest(rest.clone(), &driving).unwrap();
         assert_eq!(first_standing(&driving.rig, &again.plan), None);
         assert!((length_m(&again.ordered.drawing.strokes) - length_m(&rest.strokes)).abs() < 1e-7);
+        // whole, each by its number, it rests as well
+        let whole = schedule_whole(rest.clone(), &driving).unwrap();
+        assert_eq!(first_standing(&driving.rig, &whole.plan), None);
+        assert_eq!(whole.ordered.drawing.strokes.len(), rest.strokes.len());
+        assert!(whole.notes[0].contains("long, it is dark for"), "{:?}", whole.notes);
+        // and what no rest helps is refused
+        let refused =
+            schedule_whole(Drawing { strokes: vec![scribble(60)] }, &driving).map(|_| ()).unwrap_err();
+        assert_eq!(refused.code, "standing-light");
     }
 
     #[test]

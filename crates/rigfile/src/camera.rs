@@ -7,6 +7,7 @@ use tracelight_aim::{Camera, CameraPose, Lens, LensBelief, PlacedPage, Survey, S
 use tracelight_stroke::{Affine, Point};
 use tracelight_task::Failure;
 
+use crate::calibrated::{Calibrated, Of};
 use crate::pages::{PageName, PageTable};
 use crate::text::{Kind, text_of};
 
@@ -271,15 +272,35 @@ impl Stood {
     }
 }
 
+fn parsed(path: &str, bytes: Vec<u8>) -> Result<CameraFile, Failure> {
+    let text = text_of(&KIND, path, bytes)?;
+    toml_edit::de::from_str(&text)
+        .map_err(|e| KIND.wrong(path, &format!("no camera file: {}", e.to_string().trim_end())))
+}
+
+/// What a camera file says of how well its camera is known.
+pub(crate) fn calibrated(path: &str, bytes: Vec<u8>) -> Result<Calibrated, Failure> {
+    let file = parsed(path, bytes)?;
+    let stands = file.pose.is_some();
+    let off_mm = file.score.between_pages_mm.or(file.score.image_mm).filter(|_| stands);
+    Ok(Calibrated {
+        of: if stands { Of::Camera } else { Of::Lens },
+        date: file.date,
+        off_m: off_mm.map(|mm| 1e-3 * mm),
+        size_px: Some(file.lens.size_px),
+        pages: file.pages.len(),
+        rig: None,
+        area_m: None,
+    })
+}
+
 /// What a camera file's bytes say.
 ///
 /// # Errors
 /// `camera-file`, with the key that is wrong.
 pub fn read(path: &str, bytes: Vec<u8>) -> Result<KnownCamera, Failure> {
     let wrong = |what: String| KIND.wrong(path, &what);
-    let text = text_of(&KIND, path, bytes)?;
-    let file: CameraFile = toml_edit::de::from_str(&text)
-        .map_err(|e| wrong(format!("no camera file: {}", e.to_string().trim_end())))?;
+    let file = parsed(path, bytes)?;
     let lens = file.lens().map_err(wrong)?;
     let camera = file.pose.as_ref().map(|pose| pose.camera(&lens)).transpose().map_err(wrong)?;
     let pages: Result<Vec<_>, String> = file.pages.iter().map(PageTable::placed).collect();

@@ -5,6 +5,7 @@ use tracelight_aim::{HeadGeometry, HeadPose, PlacedPage};
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
+use crate::calibrated::{Calibrated, Of};
 use crate::pages::{PageName, PageTable};
 use crate::text::{Kind, text_of};
 use crate::timing::Timing;
@@ -190,15 +191,34 @@ pub fn write(file: &HeadFile) -> Result<String, Failure> {
     ))
 }
 
+fn parsed(path: &str, bytes: Vec<u8>) -> Result<HeadFile, Failure> {
+    let text = text_of(&KIND, path, bytes)?;
+    toml_edit::de::from_str(&text)
+        .map_err(|e| KIND.wrong(path, &format!("no head file: {}", e.to_string().trim_end())))
+}
+
+/// What a head file says of how well its head is known.
+pub(crate) fn calibrated(path: &str, bytes: Vec<u8>) -> Result<Calibrated, Failure> {
+    let file = parsed(path, bytes)?;
+    file.check().map_err(|what| KIND.wrong(path, &what))?;
+    Ok(Calibrated {
+        of: Of::Head,
+        date: file.date,
+        off_m: Some(1e-3 * file.score.rms_mm),
+        size_px: None,
+        pages: file.pages.len(),
+        rig: Some(file.rig),
+        area_m: file.area.map(|area| (area.width_m, area.height_m)),
+    })
+}
+
 /// The head of a file's bytes, for a rig that is built as told otherwise.
 ///
 /// # Errors
 /// `head-file`, with the key that is wrong; or where it is another rig's.
 pub fn read(path: &str, bytes: Vec<u8>, rig: &RigConfig) -> Result<KnownHead, Failure> {
     let wrong = |what: String| KIND.wrong(path, &what);
-    let text = text_of(&KIND, path, bytes)?;
-    let file: HeadFile = toml_edit::de::from_str(&text)
-        .map_err(|e| wrong(format!("no head file: {}", e.to_string().trim_end())))?;
+    let file = parsed(path, bytes)?;
     if file.rig != rig.name {
         return Err(wrong(format!(
             "it is of the rig {}, and this is {}: calibrate its head",

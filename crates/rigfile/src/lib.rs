@@ -4,6 +4,8 @@
 //! and defaults to the model; `[identified]` is what was identified of this very head besides. A file has every key, or
 //! names with `base` the preset whose the others are. What a camera and a head in front of a wall are known by lies in files of their own.
 
+mod calibrated;
+mod calibration;
 pub mod camera;
 mod caret;
 mod drives;
@@ -22,6 +24,8 @@ mod text;
 mod timing;
 mod whole;
 
+pub use calibrated::{Calibrated, Of, Verdict};
+pub use calibration::read as calibrated;
 pub use drives::{measured, set_law};
 pub use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
 pub use homing::homing_section;

@@ -22,6 +22,12 @@ impl PageName {
     pub const fn of(page: &PlacedPage) -> Self {
         Self { board: page.board, page: page.page }
     }
+
+    /// Of a page, from 0, of a board, by its number in `Board::ALL`.
+    #[must_use]
+    pub const fn on(board: usize, page: u16) -> Self {
+        Self { board, page }
+    }
 }
 
 impl fmt::Display for PageName {

@@ -18,6 +18,7 @@
  * @typedef {{ command: string, answer: any, words: string, svg: string, rig: string | null, failure: Failure | null }} Experiment
  * @typedef {{ name: string, planned_as: string, at_port: boolean, real: boolean }} Head
  * @typedef {{ name: string, own: boolean, description: string, problem: Failure | null }} Rig
+ * @typedef {{ name: string, kind: 'cameras' | 'heads', problem: Failure | null, of?: 'camera' | 'lens' | 'head', date: string, off_mm?: number | null, verdict?: string | null, size_px?: [number, number] | null, pages?: number, rig?: string | null }} Calibration
  * @typedef {{ id: number, name: string, role: 'operator' | 'viewer', lines: number, seen_s: number }} Device
  * @typedef {{ role: 'operator' | 'viewer' | null, local: boolean, device: number, lan: { addresses: string[], fingerprint: string } | null, devices: Device[] | null, last: { picture: string, flags: Flags } | null }} Session
  * @typedef {{ role: string, links: string[], code_svg: string | null, fingerprint: string, holds_s: number }} Invitation
@@ -42,7 +43,7 @@ async function checked(response) {
 }
 
 /** @param {string} path @param {RequestInit} [init] @returns {Promise<any>} */
-async function json(path, init) {
+export async function json(path, init) {
   const response = await fetch(`/api/v1${path}`, init).catch(() => {
     throw new Refusal({ code: 'gone', message: 'The studio’s server does not answer: is it still running in its terminal?' }, 0)
   })
@@ -50,7 +51,7 @@ async function json(path, init) {
 }
 
 /** @param {string} path @param {unknown} body @param {AbortSignal} [signal] */
-const post = (path, body, signal) => json(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body), signal })
+export const post = (path, body, signal) => json(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body), signal })
 
 /** @returns {Promise<{ version: string, folder: string, head: Head | null }>} */
 export const about = () => json('/about')
@@ -70,8 +71,8 @@ export const attend = (asked) => post('/jobs', { ...asked, attended: true })
 export const job = async () => (await json('/jobs/current')).job
 /** Moves the head at the port by hand, dark. @param {{ move: string, by?: string }} asked @returns {Promise<{ homed: boolean, pan_deg: number, tilt_deg: number }>} */
 export const moveHead = (asked) => post('/head', asked)
-/** An experiment of the lab. @param {{ command: string, of: string[], flags: Flags }} asked @returns {Promise<Experiment>} */
-export const experiment = (asked) => post('/lab', asked)
+/** An experiment of the lab. @param {{ command: string, of: string[], flags: Flags }} asked @param {AbortSignal} [signal] @returns {Promise<Experiment>} */
+export const experiment = (asked, signal) => post('/lab', asked, signal)
 /** Numbers of the lessons that were passed. @returns {Promise<number[]>} */
 export const lessons = async () => (await json('/lab/lessons')).passed
 export const stop = () => post('/stop', {})
@@ -79,15 +80,17 @@ export const stop = () => post('/stop', {})
 export const runs = async () => (await json('/runs')).runs
 /** @param {string} first @param {string} second @returns {Promise<Compared>} */
 export const compare = (first, second) => json(`/compare?first=${encodeURIComponent(first)}&second=${encodeURIComponent(second)}`)
+/** @returns {Promise<Calibration[]>} */
+export const calibrations = async () => (await json('/calibrations')).calibrations
 /** @returns {Promise<Rig[]>} */
 export const rigs = async () => (await json('/rigs')).rigs
 /** What a rig file says. @param {string} name @returns {Promise<{ name: string, own: boolean, toml: string }>} */
 export const rig = (name) => json(`/rigs/${encodeURIComponent(name)}`)
-/** Keeps a rig file, or only looks whether it is one. @param {string} name @param {string} toml @param {boolean} only_check @returns {Promise<{ remarks: string[] }>} */
-export const writeRig = (name, toml, only_check) => json(`/rigs/${encodeURIComponent(name)}`, { method: 'PUT', headers: { 'content-type': 'application/json' }, body: JSON.stringify({ toml, only_check }) })
+/** Keeps a rig file in place of what it said before, or only looks whether it is one. @param {string} name @param {string} toml @param {{ before?: string, only_check?: boolean }} how @returns {Promise<{ remarks: string[] }>} */
+export const writeRig = (name, toml, how) => json(`/rigs/${encodeURIComponent(name)}`, { method: 'PUT', headers: { 'content-type': 'application/json' }, body: JSON.stringify({ toml, ...how }) })
 /** Puts something into the trash; its name there. @param {'runs' | 'pictures' | 'rigs'} kind @param {string} id @returns {Promise<string>} */
 export const discard = async (kind, id) => (await json(`/${kind}/${encodeURIComponent(id)}`, { method: 'DELETE' })).in_trash
-/** @param {'runs' | 'pictures' | 'rigs'} kind @param {string} name */
+/** @param {'runs' | 'pictures' | 'rigs' | 'cameras' | 'heads'} kind @param {string} name */
 export const restore = (kind, name) => post(`/trash/${kind}/${encodeURIComponent(name)}`, {})
 /** @returns {Promise<Session>} */
 export const session = () => json('/session')

@@ -60,7 +60,13 @@ export class Beneath {
     const to = (/** @type {number} */ x, /** @type {number} */ y) => wall.toPixels(wall.carried(lies.apply([(x * wide) / parts, (y * high) / parts])))
     context.save()
     context.globalAlpha = share
-    for (let y = 0; y < parts; y++) for (let x = 0; x < parts; x++) part(context, ink, [x, y], parts, [to(x, y), to(x + 1, y), to(x, y + 1), to(x + 1, y + 1)])
+    for (let y = 0; y < parts; y++) {
+      for (let x = 0; x < parts; x++) {
+        const corners = /** @type {[number, number][]} */ ([[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]])
+        // what is beyond the horizon is on no wall
+        if (corners.every(([u, v]) => lies.isInFront([(u * wide) / parts, (v * high) / parts]))) part(context, ink, [x, y], parts, corners.map(([u, v]) => to(u, v)))
+      }
+    }
     context.restore()
   }
 

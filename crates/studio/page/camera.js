@@ -12,6 +12,8 @@ export class Camera {
     this.hooks = hooks
     /** @type {MediaStream | null} */
     this.stream = null
+    /** Which opening is meant: others were closed. */
+    this.opening = 0
     this.video = /** @type {HTMLVideoElement} */ (by('video'))
     this.which = /** @type {HTMLSelectElement} */ (by('which-camera'))
     by('take-picture').addEventListener('click', () => this.#take())
@@ -25,26 +27,33 @@ export class Camera {
   /** Shows what a camera sees: that one, or the one behind a phone. @param {string} [id] */
   async open(id) {
     this.close()
+    const opening = this.opening
     if (!navigator.mediaDevices) return this.hooks.problem(new Error('a browser gives its camera to pages of this computer and to those that come by https: open the studio so, or open a photograph'))
     try {
       const wanted = id ? { deviceId: { exact: id } } : { facingMode: 'environment' }
-      this.stream = await navigator.mediaDevices.getUserMedia({ video: { ...wanted, width: { ideal: WIDE } } })
-      this.video.srcObject = this.stream
+      const stream = await navigator.mediaDevices.getUserMedia({ video: { ...wanted, width: { ideal: WIDE } } })
+      // it was closed, or opened again, while somebody thought about it
+      if (opening !== this.opening) return stream.getTracks().forEach((track) => track.stop())
+      this.stream = stream
+      this.video.srcObject = stream
       await this.video.play()
       const all = (await navigator.mediaDevices.enumerateDevices()).filter(({ kind }) => kind === 'videoinput')
-      const used = this.stream.getVideoTracks()[0]?.getSettings().deviceId
+      if (opening !== this.opening) return
+      const used = stream.getVideoTracks()[0]?.getSettings().deviceId
       this.which.replaceChildren(...all.map(({ deviceId, label }, n) => new Option(label || `Camera ${n + 1}`, deviceId, false, deviceId === used)))
       this.which.hidden = all.length < 2
       by('camera').hidden = false
       by('camera').scrollIntoView({ block: 'nearest' })
       this.hooks.problem(null)
     } catch (error) {
+      if (opening !== this.opening) return
       this.close()
       this.hooks.problem(new Error(told(error)))
     }
   }
 
   close() {
+    this.opening++
     this.stream?.getTracks().forEach((track) => track.stop())
     this.stream = null
     this.video.srcObject = null

@@ -22,14 +22,13 @@ export class Corners {
     this.corners = []
     wall.above.push(this)
     by('show-corners').addEventListener('click', () => {
-      const of = sheet()
-      if (of?.unit === 'px') this.#ask(of)
-      else hooks.ask('')
+      if (sheet()?.unit === 'px') this.#ask(sheet)
+      else wall.cancel()
     })
   }
 
-  /** @param {Sheet} sheet */
-  #ask(sheet) {
+  /** @param {() => Sheet | null} planned */
+  #ask(planned) {
     const range = /** @type {HTMLInputElement} */ (by('beneath'))
     // corners are shown on the picture
     if (Number(range.value) < 60) range.value = '60'
@@ -40,6 +39,9 @@ export class Corners {
       from: () => {},
       to: () => {},
       done: (at) => {
+        const sheet = planned()
+        // what is planned anew just now lies elsewhere in a moment
+        if (!sheet || !this.wall.isPlanned()) return this.hooks.ask('It is being planned: click again in a moment.')
         this.corners.push(at)
         if (this.corners.length < WHICH.length) return next()
         const lies = new Homography(sheet.target_m, sheet.corners)

@@ -19,6 +19,7 @@ const GROUPS = [
       { flag: 'origin', label: 'Where that corner is', hint: '-1.5m,-1.2m' },
       { flag: 'rotate', label: 'Turn', hint: '15deg' },
       { flag: 'distance', label: 'Head’s distance', hint: '3ft' },
+      { flag: 'head', label: 'Head stands', choices: [['', 'square-on before the middle']] },
       { flag: 'flip', label: 'Mirror', check: true },
     ],
   },
@@ -84,6 +85,7 @@ export class Fields {
   #row(field, changed) {
     const label = document.createElement('label')
     label.className = field.check ? 'row check' : 'row'
+    label.dataset.flag = field.flag
     const text = document.createElement('span')
     text.textContent = field.label
     const input = field.choices ? document.createElement('select') : document.createElement('input')
@@ -98,7 +100,7 @@ export class Fields {
     input.addEventListener('change', () => {
       const value = input instanceof HTMLInputElement && field.check ? input.checked : input.value.trim()
       // one of both says the other
-      const other = /** @type {Record<string, Flags>} */ ({ width: { height: '' }, height: { width: '' } })
+      const other = /** @type {Record<string, Flags>} */ ({ width: { height: '' }, height: { width: '' }, distance: { head: '' }, head: { distance: '' } })
       // where a corner is means nothing without one
       const alone = /** @type {Flags} */ (field.flag === 'from' && !value ? { origin: '' } : {})
       changed({ ...(value ? other[field.flag] : {}), ...alone, [field.flag]: value })
@@ -117,6 +119,12 @@ export class Fields {
   name(flag, words) {
     const first = /** @type {HTMLSelectElement} */ (this.inputs.get(flag)).options[0]
     if (first) first.text = words
+  }
+
+  /** Gives a field one more choice, after its first. @param {string} flag @param {string} value @param {string} words */
+  offer(flag, value, words) {
+    const select = /** @type {HTMLSelectElement} */ (this.inputs.get(flag))
+    if (![...select.options].some((option) => option.value === value)) select.add(new Option(words, value), 1)
   }
 
   /** Gives a field choices beside its own. @param {string} flag @param {[string, string][]} choices @param {Flags} flags what is asked for */

@@ -96,6 +96,7 @@ export class Lab {
     this.problem = problem
     this.timer = 0
     this.number = 0
+    this.before = new AbortController()
     this.address = ''
     /** @type {Map<string, HTMLInputElement | HTMLSelectElement>} */
     this.inputs = new Map()
@@ -153,7 +154,7 @@ export class Lab {
         const names = (await api.rigs()).map(({ name }) => name)
         let name = 'tuned.toml'
         for (let n = 2; names.includes(name); n++) name = `tuned-${n}.toml`
-        await api.writeRig(name, toml, false)
+        await api.writeRig(name, toml, { before: '' })
         location.hash = `#rigs=${name}`
       } catch (error) {
         this.problem(error)
@@ -227,8 +228,11 @@ export class Lab {
   /** @param {{ command: string, of: string[], flags: api.Flags }} asked @returns {Promise<api.Experiment | null>} */
   async #ask(asked) {
     const number = ++this.number
+    // what was asked before is wanted no more, and ends
+    this.before.abort()
+    this.before = new AbortController()
     try {
-      const told = await api.experiment(asked)
+      const told = await api.experiment(asked, this.before.signal)
       // somebody asks for another by now
       if (number !== this.number) return null
       this.problem(null)
@@ -237,7 +241,10 @@ export class Lab {
       by('lab-command').textContent = told.command
       return told
     } catch (error) {
-      if (number === this.number) this.problem(error)
+      if (number === this.number) {
+        this.problem(error)
+        by('lab-words').textContent = ''
+      }
       return null
     }
   }

@@ -11,16 +11,17 @@ import { Fields, asLabelled } from './fields.js'
 import { HeadPad } from './head.js'
 import { figures, noFigures } from './figures.js'
 import { keep, kept, themes, units } from './kept.js'
+import { follow, showResult } from './jobs.js'
 import { Marks } from './marks.js'
 import { Pictures } from './pictures.js'
 import { boxOf, flagsOf, measuredAnew, planned } from './place.js'
-import { Runs, follow, showResult } from './runs.js'
 import { Run } from './run.js'
 import { Store, essence } from './store.js'
 import { Timeline } from './timeline.js'
 import { askUnit } from './unit.js'
+import { Views } from './views.js'
 import { NOWHERE, Wall } from './wall.js'
-import { shown } from './words.js'
+import { called, isCamera, listed, metres, shown } from './words.js'
 
 /** How long a wish rests before it is planned, ms. */
 const REST = 150
@@ -30,7 +31,6 @@ const NUDGE_M = 1e-3
 const LOOK = 1000
 /** In how many seconds a drawing is played while it is traced. */
 const PLAYED_S = 6
-const VIEWS = ['place', 'run', 'runs', 'compare', 'lab', 'rigs', 'devices']
 
 const page = crypto.randomUUID()
 const session = await arrive().catch(() => null)
@@ -45,7 +45,6 @@ let plan = null
 /** @type {api.Flags} what it was asked by */
 let planFlags = {}
 let tracing = false
-let shownView = ''
 
 const wall = new Wall(by('wall'), (box, done) => {
   const flags = placed(box)
@@ -105,31 +104,40 @@ run.operates = operates
 const pictures = new Pictures({ choose, chosen: () => store.asked.picture, problem, operates })
 const pad = new HeadPad(problem)
 // what the first view does not need comes when somebody goes there
-const lab = once(async () => new (await import('./lab.js')).Lab((error) => told('lab-problem', error)))
 const camera = once(async () => new (await import('./camera.js')).Camera({ take: (file) => void pictures.take(file), problem }))
-const rigs = once(async () => new (await import('./rigs.js')).Rigs({
-  problem: (error) => told('rigs-problem', error),
-  use: (rig) => {
-    store.flags({ rig: rig === 'report' ? '' : rig })
+const views = new Views({
+  told,
+  flags: () => store.asked.flags,
+  use: (flags) => {
+    // without a head of its own the studio has the preset
+    store.flags(flags.rig === 'report' && !head ? { ...flags, rig: '' } : flags)
     location.hash = '#place'
   },
-  changed: ownRigs,
-  operates,
-}))
-const devices = once(async () => new (await import('./devices.js')).Devices((error) => told('devices-problem', error)))
-const runs = new Runs({
-  again: (of) => take_up(of, '#place'),
-  rest: (of) => {
-    take_up(of, '#run')
-    run.goOnWith(of)
+  place: (picture) => {
+    choose(picture)
+    location.hash = '#place'
   },
-  from: (of, stroke) => {
-    take_up(of, '#run')
-    run.from(stroke)
+  ownRigs,
+  calibrated: ownHeads,
+  again: (of, view) => take_up(of, view),
+  run,
+  folder: () => folder,
+  entered: (attends) => {
+    fix(attends)
+    wall.cancel()
+    run.modes()
   },
-  problem: (error) => told('runs-problem', error),
+  outside: session?.role === null,
   operates,
 })
+
+/** What the camera sees is drawn where it is, and what somebody attends lies where it lies. @param {boolean} attends */
+function fix(attends) {
+  const by_camera = isCamera(store.asked.picture)
+  document.body.classList.toggle('by-camera', by_camera)
+  wall.fixed = attends || !operates || by_camera
+  fields.name('head', by_camera ? 'where the camera finds it' : 'square-on before the middle')
+}
 
 /** Takes up what a run was asked, on the wall. @param {api.RunTold | api.Job} of @param {string} view */
 function take_up(of, view) {
@@ -177,7 +185,7 @@ function nothing() {
 function details(of) {
   marks.show(of)
   dark.show(of)
-  beneath.show(store.asked.picture, of?.sheet ?? null)
+  beneath.show(store.asked.picture, isCamera(store.asked.picture) ? null : (of?.sheet ?? null))
   askUnit(of?.sheet ?? null, store.asked.flags, false, (flags) => store.flags(flags))
 }
 
@@ -301,9 +309,12 @@ async function stop() {
 
 /** Puts a picture on the wall. @param {string} picture @param {api.Flags} [flags] */
 function choose(picture, flags) {
-  const { distance, rig } = store.asked.flags
-  // what was asked of one picture is not asked of another, but where the head stands
-  const next = { picture, flags: flags ?? { ...(distance ? { distance } : {}), ...(rig ? { rig } : {}) } }
+  const { distance, head, rig, from, origin } = store.asked.flags
+  // areas of the wall stay; layers are a drawing's own
+  const no_go = listed(store.asked.flags.no_go).filter((area) => area.split(',').map(metres).filter((length) => length !== null).length === 4)
+  const stays = Object.fromEntries(Object.entries({ distance, head, rig, from, origin, no_go }).filter(([, value]) => value && String(value) !== ''))
+  // what was asked of one picture is not asked of another, but where the head stands, and what is of the wall
+  const next = { picture, flags: flags ?? /** @type {api.Flags} */ (isCamera(picture) ? { ...stays, from: '', origin: '', no_go: [] } : stays) }
   if (next.picture === store.asked.picture && essence(next.flags) === essence(store.asked.flags)) return
   problem(null)
   wall.cancel()
@@ -311,38 +322,6 @@ function choose(picture, flags) {
   wall.first = true
   run.anew()
   store.set(next)
-}
-
-/** Shows the view that the address names. */
-function view() {
-  const [named, more] = location.hash.slice(1).split('=')
-  const is = session?.role === null ? 'outside' : VIEWS.includes(named) ? named : 'place'
-  const attends = is === 'run'
-  by('place').hidden = is !== 'place' && !attends
-  for (const id of ['runs', 'compare', 'lab', 'rigs', 'devices', 'outside']) by(id).hidden = is !== id
-  by('placing').hidden = attends
-  by('attend').hidden = !attends
-  document.body.classList.toggle('attending', attends)
-  document.body.classList.toggle('looks-on', !operates)
-  by('fields').toggleAttribute('inert', !operates)
-  wall.fixed = attends || !operates
-  wall.cancel()
-  const current = is === 'compare' ? 'runs' : is
-  for (const id of ['place', 'run', 'runs', 'lab', 'rigs', 'devices']) {
-    if (id === current) by(`to-${id}`).setAttribute('aria-current', 'page')
-    else by(`to-${id}`).removeAttribute('aria-current')
-  }
-  if (is !== shownView) scrollTo(0, 0)
-  const was = shownView
-  shownView = is
-  if (is === 'devices' || was === 'devices') devices().then((view) => view.show(is === 'devices'), (error) => told('devices-problem', error))
-  if (is === 'lab') lab().then((view) => view.show(more ?? ''), (error) => told('lab-problem', error))
-  if (is === 'rigs') rigs().then((view) => view.show(more ?? '')).catch((error) => told('rigs-problem', error))
-  if (is === 'runs') runs.show(folder).catch((error) => told('runs-problem', error))
-  if (is === 'compare') {
-    const [first, second] = decodeURIComponent(more ?? '').split(',')
-    import('./compare.js').then((view) => view.showCompared(first, second)).then(() => told('compare-problem', null), (error) => told('compare-problem', error))
-  }
 }
 
 /** @param {KeyboardEvent} event */
@@ -405,7 +384,8 @@ store.watch((asked) => {
   keep('sessionStorage', 'asked', JSON.stringify(asked))
   wall.place({ ...lies(asked.flags), width: wall.box.width, height: wall.box.height })
   pictures.mark(asked.picture)
-  by('name').textContent = asked.picture
+  fix(location.hash === '#run')
+  by('name').textContent = called(asked.picture)
   planSoon()
 })
 
@@ -423,7 +403,7 @@ addEventListener('keyup', () => run.released())
 addEventListener('hashchange', () => {
   // an invitation that is opened where the page is already
   if (location.hash.startsWith('#join=')) location.reload()
-  else view()
+  else views.show()
 })
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => wall.redraw())
 
@@ -434,8 +414,10 @@ units(by('units'), (imperial) => {
   wall.redraw()
 })
 fields.show(store.asked.flags)
-by('name').textContent = store.asked.picture
-view()
+by('name').textContent = called(store.asked.picture)
+document.body.classList.toggle('looks-on', !operates)
+by('fields').toggleAttribute('inert', !operates)
+views.show()
 if (session?.role === null) {
   document.body.classList.add('outside')
   by('name').textContent = 'Tracelight'
@@ -455,10 +437,13 @@ async function about() {
     const told = await api.about()
     folder = told.folder
     head = told.head
-    if (head) fields.name('rig', `${head.name}: the one here`)
+    if (head) {
+      fields.name('rig', `${head.name}: the one here`)
+      fields.offer('rig', 'report', 'report: as of 2006')
+    }
     await ownRigs()
     heads()
-    view()
+    views.show()
   } catch (error) {
     problem(error)
     setTimeout(about, 2 * LOOK)
@@ -467,9 +452,15 @@ async function about() {
 
 /** Lets the head be chosen among the folder’s rig files too; what is planned with one that was changed is planned anew. */
 async function ownRigs() {
-  const all = await api.rigs()
+  const [all, known] = await Promise.all([api.rigs(), api.calibrations()])
+  ownHeads(known)
   fields.also('rig', all.filter((rig) => rig.own && !rig.problem).map((rig) => [rig.name, rig.name]), store.asked.flags)
   if (all.some((rig) => rig.own && rig.name === store.asked.flags.rig)) planSoon()
+}
+
+/** Lets the head stand where it was found. @param {api.Calibration[]} all */
+function ownHeads(all) {
+  fields.also('head', all.filter((of) => of.kind === 'heads' && !of.problem).map((of) => [of.name, of.name]), store.asked.flags)
 }
 
 /** Looks whether somebody traces: another page, or this one before it was loaded again. */

@@ -77,9 +77,8 @@ export class Marks {
 
   /** Asks for a point of the drawing. */
   #add() {
-    const { wall, plan } = this
-    const sheet = plan?.sheet
-    if (!sheet || !wall.points) return
+    const { wall } = this
+    if (!this.plan?.sheet || !wall.points) return
     this.hooks.ask('Click a point of the drawing: an end, a corner, a line.')
     const show = (/** @type {[number, number]} */ at) => {
       this.near = snapped(wall, at)
@@ -88,6 +87,9 @@ export class Marks {
       from: show,
       to: show,
       done: (at) => {
+        const sheet = this.plan?.sheet
+        // what is planned anew just now lies elsewhere in a moment
+        if (!sheet || !wall.isPlanned()) return this.hooks.ask('It is being planned: click again in a moment.')
         const point = snapped(wall, at)
         this.#over()
         const [x, y] = new Homography(sheet.target_m, sheet.corners).apply(point)

@@ -34,13 +34,25 @@ export function planned(of) {
 /** Where the drawing is to be by its flags, as far as the page can tell before it is planned. @param {Flags} flags @param {Box} was where it was planned @param {Flags} by by these */
 export function boxOf(flags, was, by) {
   const is_measured_alike = ['from', 'origin'].every((flag) => (flags[flag] ?? '') === (by[flag] ?? ''))
-  if (listed(flags.align).length > 0 || listed(by.align).length > 0 || !is_measured_alike) return was
+  if (!is_measured_alike) return was
+  if (listed(flags.align).length > 0 || listed(by.align).length > 0) return byMarks(flags, was, by)
   const [to, from] = [offset(String(flags.offset ?? '')), offset(String(by.offset ?? ''))]
   const [right, up] = ways(flags)
   const degree = degrees(String(flags.rotate ?? ''))
   const turn = degree === null ? was.turn : (degree * Math.PI) / 180
   if (!to || !from) return { ...was, turn }
   return { ...was, x: was.x + right * (to[0] - from[0]), y: was.y + up * (to[1] - from[1]), turn }
+}
+
+/** Where it is to be by marks that were all moved alike; by any others where it was. @param {Flags} flags @param {Box} was @param {Flags} by @returns {Box} */
+function byMarks(flags, was, by) {
+  const [to, from] = [listed(flags.align), listed(by.align)].map((marks) => marks.map((mark) => offset(mark.split('=')[1] ?? '')))
+  const ways_m = to.map((at, n) => (at && from[n] ? [at[0] - from[n][0], at[1] - from[n][1]] : null))
+  const [first] = ways_m
+  const is_alike = to.length === from.length && ways_m.every((way) => way && first && Math.hypot(way[0] - first[0], way[1] - first[1]) < 2e-4)
+  if (!first || !is_alike) return was
+  const [right, up] = ways(flags)
+  return { ...was, x: was.x + right * first[0], y: was.y + up * first[1] }
 }
 
 /** The corner of a box's bounds that its offset is that of. @param {Box} box @param {Flags} flags @returns {[number, number]} */
@@ -66,7 +78,9 @@ export function flagsOf(box, is, flags) {
   const marks = listed(flags.align)
   if (marks.length > 0) {
     // it is sized and turned about its mark
-    if (!is_sized && !is_turned) change.align = marks.map((mark) => shifted(mark, dx, dy))
+    const moved = marks.map((mark) => shifted(mark, dx, dy))
+    // one by angles stays where the head was: with it nothing can be moved
+    if (!is_sized && !is_turned && moved.every((mark) => mark !== null)) change.align = /** @type {string[]} */ (moved)
     return change
   }
   const was = offset(String(flags.offset ?? ''))
@@ -92,7 +106,7 @@ export function measuredAnew(was, flags, box) {
       const anew = place(to ?? '')
       return anew === null ? mark : `${at}=${anew}`
     })
-  } else if (flags.from || was.offset) {
+  } else if (was.from || flags.from || was.offset) {
     const at = told(corner(box, flags), flags)
     change.offset = offset(at)?.every((m) => m === 0) ? '' : at
   }
@@ -114,9 +128,9 @@ export function areaOf([left, low, right, top], flags) {
   return [to_right > 0 ? left - x : x - right, to_up > 0 ? low - y : y - top, right - left, top - low].map(typed).join(',')
 }
 
-/** A mark that belongs so much further away; one by angles stays where the head was. @param {string} mark @param {number} dx @param {number} dy */
+/** A mark that belongs so much further away; null of one by angles. @param {string} mark @param {number} dx @param {number} dy */
 function shifted(mark, dx, dy) {
   const [at, to] = mark.split('=')
   const [x, y] = (to ?? '').split(',').map((text) => metres(text))
-  return x == null || y == null ? mark : `${at}=${typed(x + dx)},${typed(y + dy)}`
+  return x == null || y == null ? null : `${at}=${typed(x + dx)},${typed(y + dy)}`
 }

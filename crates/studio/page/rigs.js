@@ -62,7 +62,10 @@ export class Rigs {
 
   /** @param {string} name */
   async #read(name) {
+    const number = ++this.asked
     const told = await api.rig(name)
+    // another one was chosen since
+    if (number !== this.asked) return
     this.name = told.name
     this.own = told.own
     this.kept = told.toml
@@ -99,6 +102,8 @@ export class Rigs {
     const is_changed = this.text.value !== this.kept
     by('rig-save').toggleAttribute('disabled', !is_changed || !this.hooks.operates)
     by('rig-save').textContent = is_changed ? 'Save' : 'Saved'
+    // what draws is what is kept
+    by('rig-use').textContent = is_changed && this.own ? 'Draw with it as saved' : 'Draw with it'
   }
 
   /** Looks at what is written, without keeping it. */
@@ -111,7 +116,7 @@ export class Rigs {
     }
     const number = ++this.asked
     try {
-      const { remarks } = await api.writeRig(this.name, this.text.value, true)
+      const { remarks } = await api.writeRig(this.name, this.text.value, { only_check: true })
       if (number === this.asked) this.#right(remarks)
     } catch (error) {
       if (number === this.asked) this.#wrong(error)
@@ -156,17 +161,19 @@ export class Rigs {
   async #save() {
     const { name } = this
     const text = this.text.value
+    by('rig-save').setAttribute('disabled', '')
     try {
-      await api.writeRig(name, text, false)
-      this.kept = text
-      this.drafts.delete(name)
-      this.#state()
+      await api.writeRig(name, text, { before: this.kept })
+      // what was typed meanwhile is a draft still
+      if (this.drafts.get(name) === text) this.drafts.delete(name)
+      if (this.name === name) this.kept = text
       await this.#list()
       this.#mark()
       this.hooks.changed()
     } catch (error) {
-      this.#wrong(error)
+      if (this.name === name) this.#wrong(error)
     }
+    this.#state()
   }
 
   /** A new file, of a preset. @param {(base: string) => string | Promise<string>} text */
@@ -177,11 +184,13 @@ export class Rigs {
     let name = `${stem}.toml`
     for (let n = 2; !free(name); n++) name = `${stem}-${n}.toml`
     try {
-      await api.writeRig(name, await text(/** @type {HTMLSelectElement} */ (by('rig-base')).value), false)
+      await api.writeRig(name, await text(/** @type {HTMLSelectElement} */ (by('rig-base')).value), { before: '' })
       field.value = ''
       this.hooks.problem(null)
       this.hooks.changed()
-      location.hash = `#rigs=${encodeURIComponent(name)}`
+      const address = `#rigs=${encodeURIComponent(name)}`
+      if (location.hash === address) await this.show(name)
+      else location.hash = address
     } catch (error) {
       this.hooks.problem(error)
     }

@@ -6,8 +6,8 @@ import { by, element } from './dom.js'
 import { asLabelled } from './fields.js'
 import { Hold } from './hold.js'
 import { Live } from './live.js'
-import { follow } from './runs.js'
-import { plain, time } from './words.js'
+import { follow } from './jobs.js'
+import { isCamera, isRoom, plain, time } from './words.js'
 
 /** What was told longer ago is not known any more, ms. */
 const STALE = 400
@@ -59,6 +59,10 @@ export class Run {
     this.state = ''
     /** @type {import('./live.js').Told | null} the point that is marked */
     this.point = null
+    /** @type {import('./live.js').Told | null} what the camera has seen of the light */
+    this.seen = null
+    /** How a camera looks into what is off. */
+    this.looks = 'over'
     /** When it was last told how far it is, ms. */
     this.heard = 0
     /** @type {import('./live.js').Told} */
@@ -79,16 +83,16 @@ export class Run {
     by('refuse').addEventListener('click', () => this.#refuse())
     by('faster').addEventListener('change', () => this.#ask(`speed=${Number(field('faster').value) / 100}`))
     by('faster').addEventListener('input', () => (by('percent').textContent = `${field('faster').value} %`))
-    for (const radio of document.querySelectorAll('input[name=mode]')) radio.addEventListener('change', () => this.#modes())
+    for (const radio of document.querySelectorAll('input[name=mode]')) radio.addEventListener('change', () => this.modes())
     setInterval(() => this.#stale(), 100)
     document.addEventListener('visibilitychange', () => this.#wake())
-    this.#modes()
+    this.modes()
   }
 
   /** Takes the rest of a run as what is to be drawn, or again the drawing as it is placed. @param {api.RunTold | null} run */
   goOnWith(run) {
     this.rest = run
-    this.#modes()
+    this.modes()
     this.hooks.heads()
   }
 
@@ -124,10 +128,11 @@ export class Run {
     const how = {}
     const times = field('times').value
     if (times !== '1' && !this.at_port) how.real_time = times
-    if (field('frame').value !== '') how.frame = field('frame').value
+    if (field('frame').value !== '' && !isCamera(picture)) how.frame = field('frame').value
     if (this.rest) return { rest_of: this.rest.id, flags: how }
     const asked = { ...flags, ...how }
-    const mode = this.#mode()
+    const mode = isCamera(picture) ? 'trace' : this.#mode()
+    if (isRoom(picture) && field('trouble').value !== '') asked.sim_trouble = field('trouble').value
     if (field('dry').checked) asked.dry_run = true
     const from = field('from-stroke').value.trim()
     if (from !== '' && from !== '1') asked.from_stroke = from
@@ -141,8 +146,10 @@ export class Run {
     return /** @type {HTMLInputElement | null} */ (document.querySelector('input[name=mode]:checked'))?.value ?? 'trace'
   }
 
-  #modes() {
+  /** Shows what may be asked of what is to be drawn. */
+  modes() {
     const { rest } = this
+    by('trouble-row').hidden = rest !== null || !isRoom(this.hooks.asked().picture)
     by('pace-row').hidden = this.#mode() === 'trace' || rest !== null
     by('rest').hidden = rest === null
     by('rest-words').textContent = rest ? `The rest of ${rest.id}${rest.progress ? `, from stroke ${rest.progress.stroke} of ${rest.progress.strokes}` : ''}, as it was asked then.` : ''
@@ -157,7 +164,7 @@ export class Run {
     this.begins = true
     enable('begin', false)
     try {
-      this.mode = this.rest ? 'trace' : this.#mode()
+      this.mode = this.rest || isCamera(this.hooks.asked().picture) ? 'trace' : this.#mode()
       this.#say('')
       by('checks').replaceChildren()
       this.live.open()
@@ -281,6 +288,8 @@ export class Run {
         this.now = { event: 'progress' }
         this.state = ''
         this.point = null
+        this.seen = null
+        this.looks = 'over'
         this.framing = false
         this.heard = performance.now()
         // on a phone what comes next is in view, before anybody can hold a button there
@@ -310,6 +319,10 @@ export class Run {
       this.#say('The page that operates it keeps it.')
     } else if (told.event === 'refused') {
       this.#say(told.message)
+    } else if (told.event === 'seen') {
+      this.seen = told
+    } else if (told.event === 'looks') {
+      this.looks = told.state
     } else if (told.event === 'fault') {
       this.#say(`${told.code}: ${told.message}`)
     } else if (told.event === 'lost') {
@@ -364,7 +377,17 @@ export class Run {
     return [stroke + of, at].filter(Boolean).join(' · ')
   }
 
+  /** What a camera sees of it, in words. */
+  #sight() {
+    const { seen, looks } = this
+    if (looks === 'begun') return 'Something is off: the camera looks into it, in the dark and by dots. Stop ends that.'
+    if (looks === 'stopped') return 'Stopped, dark. Hold to arm, then Go on: the camera looks again.'
+    return seen ? `The camera sees the spot ${plain(seen.rms_mm, 2)} mm off, rms, the last time ${plain(seen.off_mm, 2)} mm; ${seen.images} images` : ''
+  }
+
   #show() {
+    by('seen-now').textContent = this.#sight()
+    by('seen-now').hidden = this.#sight() === ''
     const { state, now, on, mine } = this
     const is_on = ON.includes(state)
     const armed = state === 'armed'

@@ -14,12 +14,23 @@ export class Homography {
       rows.push([x, y, 1, 0, 0, 0, -u * x, -u * y, u], [0, 0, 0, x, y, 1, -v * x, -v * y, v])
     })
     this.of = solved(rows)
+    this.side = Math.sign(this.#depth(from[0]))
+  }
+
+  /** @param {Place} at */
+  #depth([x, y]) {
+    return this.of[6] * x + this.of[7] * y + 1
+  }
+
+  /** Whether a place is on this side of the horizon, as those are by which it was found. @param {Place} at */
+  isInFront(at) {
+    return this.#depth(at) * this.side > 1e-9
   }
 
   /** @param {Place} at @returns {Place} */
   apply([x, y]) {
-    const [a, b, c, d, e, f, g, h] = this.of
-    const w = g * x + h * y + 1
+    const [a, b, c, d, e, f] = this.of
+    const w = this.#depth([x, y])
     return [(a * x + b * y + c) / w, (d * x + e * y + f) / w]
   }
 

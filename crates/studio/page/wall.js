@@ -414,9 +414,19 @@ export class Wall {
 
   /** Asks a pointer to show something, or nothing any more. @param {Tool | null} tool */
   ask(tool) {
+    const former = this.tool
+    this.tool = null
+    // one that gives way leaves nothing behind
+    if (tool && former && former !== tool) former.cancelled()
     this.tool = tool
     this.canvas.dataset.under = tool ? 'tool' : 'pan'
     this.dirty = true
+  }
+
+  /** Whether the drawing lies where it was planned, and nothing else is asked for. */
+  isPlanned() {
+    const [{ x, y, turn, width }, was] = [this.box, this.planned]
+    return Math.hypot(x - was.x, y - was.y, width - was.width) < 1e-6 && Math.abs(turn - was.turn) < 1e-6 && !document.body.classList.contains('waits')
   }
 
   /** Where a place is now that was planned there: it goes with the drawing while that is moved. @param {[number, number]} at @returns {[number, number]} */

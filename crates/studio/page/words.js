@@ -32,6 +32,15 @@ export function degrees(text) {
   return found[2] === 'rad' ? (value * 180) / Math.PI : value
 }
 
+/** Whether what is drawn is what a camera sees, and no picture. @param {string} picture */
+export const isCamera = (picture) => picture.startsWith('camera:')
+
+/** Whether a simulated camera sees it, in a simulated room. @param {string} picture */
+export const isRoom = (picture) => picture.startsWith('camera:sim')
+
+/** What people call a picture, or a camera. @param {string} picture */
+export const called = (picture) => (isCamera(picture) ? `Camera: ${picture.slice(7)}` : picture)
+
 /** All values of a flag that may be given again. @param {string | boolean | string[] | null | undefined} value @returns {string[]} */
 export const listed = (value) => (Array.isArray(value) ? value : typeof value === 'string' && value !== '' ? [value] : [])
 

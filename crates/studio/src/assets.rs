@@ -28,9 +28,11 @@ macro_rules! script {
 }
 
 /// The page first.
-pub(crate) static ASSETS: [Asset; 34] = [
+pub(crate) static ASSETS: [Asset; 42] = [
     asset!("index.html", "text/html; charset=utf-8"),
     asset!("style.css", "text/css; charset=utf-8"),
+    asset!("views.html", "text/html; charset=utf-8"),
+    asset!("views.css", "text/css; charset=utf-8"),
     asset!("icon.svg", "image/svg+xml"),
     script!("main.js"),
     script!("api.js"),
@@ -45,6 +47,7 @@ pub(crate) static ASSETS: [Asset; 34] = [
     script!("runs.js"),
     script!("run.js"),
     script!("live.js"),
+    script!("jobs.js"),
     script!("hold.js"),
     script!("words.js"),
     script!("kept.js"),
@@ -53,6 +56,10 @@ pub(crate) static ASSETS: [Asset; 34] = [
     script!("head.js"),
     script!("rigs.js"),
     script!("camera.js"),
+    script!("cameras.js"),
+    script!("calibrated.js"),
+    script!("calibrations.js"),
+    script!("head-corners.js"),
     script!("lab.js"),
     script!("pictures.js"),
     script!("beneath.js"),
@@ -63,6 +70,7 @@ pub(crate) static ASSETS: [Asset; 34] = [
     script!("scale.js"),
     script!("sheet.js"),
     script!("unit.js"),
+    script!("views.js"),
 ];
 
 /// A file in both forms, and what tells one version from another.
@@ -116,6 +124,10 @@ mod tests {
         let all: usize = ASSETS.iter().map(|asset| bytes(&asset.name)).sum();
         assert!((first..=160 * 1024).contains(&all), "{all} bytes");
         for asset in &ASSETS {
+            for line in asset.text.lines().filter(|line| line.starts_with("import ")) {
+                let from = line.rsplit('\'').nth(1).unwrap().trim_start_matches("./");
+                assert!(packed(from).is_some(), "{}: {from}", asset.name);
+            }
             for part in asset.text.split("import('./").skip(1) {
                 let name = part.split('\'').next().unwrap();
                 assert!(packed(name).is_some(), "{}: {name}", asset.name);

@@ -12,12 +12,14 @@ use tracelight_task::Failure;
 
 use crate::devices::Caller;
 use crate::flags::{Which, arguments, mode_of, typed};
+use crate::folder::Kind;
 use crate::folder::{Folder, no_run};
 use crate::live::Live;
+use crate::names::Names;
 use crate::points;
 use crate::program::{Head, Performed, Program, Seat};
-use crate::rig_names::Rigs;
 use crate::tasks::{AtLast, Ended, Work};
+use crate::watch::{Watching, as_camera, file_stem};
 
 /// Plans whose points are kept for pages to fetch.
 const KEPT_PLANS: usize = 16;
@@ -26,7 +28,7 @@ const MOST_PAGES: usize = 64;
 
 /// Everything in hand.
 pub(crate) struct Desk {
-    pub(crate) program: Box<dyn Program>,
+    pub(crate) program: Arc<dyn Program>,
     pub(crate) folder: Folder,
     next: AtomicU64,
     plans: Mutex<VecDeque<(u64, Bytes)>>,
@@ -43,6 +45,12 @@ pub(crate) struct Desk {
     job: Mutex<Option<Job>>,
     /// A move of the head by hand.
     moved: Mutex<Option<Arc<Work>>>,
+    /// The experiment that is made, or the last one that was.
+    experiment: Mutex<Option<Arc<Work>>>,
+    /// Held while a file of the folder is replaced.
+    writing: Mutex<()>,
+    /// Cameras that pages look through.
+    pub(crate) watching: Watching,
     /// What pages and a job that they attend say to each other.
     pub(crate) live: Live,
 }
@@ -89,7 +97,7 @@ fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Desk {
     pub(crate) fn new(program: Box<dyn Program>, folder: Folder) -> Self {
         Self {
-            program,
+            program: Arc::from(program),
             folder,
             next: AtomicU64::new(1),
             plans: Mutex::default(),
@@ -100,6 +108,9 @@ impl Desk {
             experimenting: Arc::default(),
             job: Mutex::default(),
             moved: Mutex::default(),
+            experiment: Mutex::default(),
+            writing: Mutex::default(),
+            watching: Watching::default(),
             live: Live::new(),
         }
     }
@@ -137,19 +148,25 @@ impl Desk {
         flags: &Map<String, Value>,
         which: Which,
     ) -> Result<Vec<String>, Failure> {
-        let Some(path) = self.folder.picture(picture) else {
-            return Err(Failure::usage(
-                "unreadable",
-                format!("there is no picture {picture:?} in the studio's folder"),
-            ));
-        };
-        let mut command = vec![name.to_owned(), path.to_string_lossy().into_owned()];
-        command.extend(arguments(flags, which, &self.known_rigs())?);
+        let mut command = vec![name.to_owned(), self.subject(picture)?];
+        command.extend(arguments(flags, which, &self.names())?);
         if let Some(head) = self.head_of(flags) {
             let rig = if which == Which::Attended { &head.draws_as } else { &head.planned_as };
             command.push(format!("--rig={rig}"));
         }
         Ok(command)
+    }
+
+    /// What is drawn, as a command line names it: a picture's path, or a camera.
+    fn subject(&self, picture: &str) -> Result<String, Failure> {
+        if let Some(camera) = as_camera(picture) {
+            return Ok(format!("--camera={}", self.source(camera)?));
+        }
+        let missing = || {
+            let message = format!("there is no picture {picture:?} in the studio's folder");
+            Failure::usage("unreadable", message)
+        };
+        Ok(self.folder.picture(picture).ok_or_else(missing)?.to_string_lossy().into_owned())
     }
 
     /// Takes note of what a page asks for, by the number that it gives its wishes, and ends what it asked for before; a page without a name asks for everything at once.
@@ -272,18 +289,18 @@ impl Desk {
         let dir = self.run_dir(run)?;
         let told = self.run(run)?.ok_or_else(|| no_run(run))?;
         let rig = told["rig"].as_str();
-        let (head, rigs) = (self.program.head(), self.known_rigs());
+        let (head, names) = (self.program.head(), self.names());
         let is_heads = |rig: &str| {
             head.is_some_and(|head| [&head.draws_as, &head.planned_as].iter().any(|is| *is == rig))
         };
-        if let Some(rig) = rig.filter(|rig| !is_heads(rig) && rigs.value(rig).is_none()) {
+        if let Some(rig) = rig.filter(|rig| !is_heads(rig) && names.value(Kind::Rigs, rig).is_none()) {
             let message = format!(
                 "{run} was drawn by the head {rig}: open the studio with --rig {rig}, and go on with it there"
             );
             return Err(Failure::usage("usage", message));
         }
         let mut command = vec!["resume".to_owned(), dir];
-        command.extend(arguments(flags, Which::Rest, &Rigs::default())?);
+        command.extend(arguments(flags, Which::Rest, &Names::default())?);
         let picture = told["picture"].as_str().unwrap_or("picture.png").to_owned();
         let keeps_time = head.is_some_and(|head| head.is_at_port && rig == Some(head.draws_as.as_str()));
         Ok((command, picture, told["flags"].clone(), keeps_time))
@@ -319,7 +336,8 @@ impl Desk {
         }
         // from here on it ends, whatever becomes of it
         let last = AtLast(Arc::clone(&work));
-        let (run, dir) = self.folder.begin_run(&picture)?;
+        let named = as_camera(&picture).map_or_else(|| picture.clone(), file_stem);
+        let (run, dir) = self.folder.begin_run(&named)?;
         if let Some(job) = locked(&self.job).as_mut() {
             job.run = run;
         }
@@ -405,9 +423,23 @@ impl Desk {
         })
     }
 
+    /// The turn to replace a file of the folder.
+    pub(crate) fn writes(&self) -> MutexGuard<'_, ()> {
+        locked(&self.writing)
+    }
+
+    /// Takes note of an experiment, which ends when the studio does.
+    pub(crate) fn begin_experiment(&self, work: &Arc<Work>) {
+        *locked(&self.experiment) = Some(Arc::clone(work));
+    }
+
     /// Ends everything in hand.
     pub(crate) fn close(&self) {
         self.end();
+        self.watching.close();
+        locked(&self.experiment).iter().for_each(|work| {
+            work.stop.want();
+        });
         locked(&self.asked).values().for_each(|(_, work)| {
             work.stop.want();
         });

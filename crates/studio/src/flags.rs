@@ -3,10 +3,10 @@
 use serde_json::{Map, Value};
 use tracelight_task::{Failure, nearest, quoted};
 
-use crate::rig_names::Rigs;
+use crate::names::Names;
 
-/// Flags of `plan` and `trace` that a page may give. None of them names a file.
-const FLAGS: [&str; 36] = [
+/// Flags of `plan` and `trace` that a page may give. None of them names a file, but for rigs, heads and calibrations by their names in the folder.
+const FLAGS: [&str; 39] = [
     "width",
     "height",
     "offset",
@@ -25,6 +25,9 @@ const FLAGS: [&str; 36] = [
     "layer",
     "colour",
     "distance",
+    "head",
+    "calibration",
+    "seed",
     "rig",
     "speed",
     "lit_speed",
@@ -45,8 +48,8 @@ const FLAGS: [&str; 36] = [
     "hatch",
 ];
 /// Flags of a job that a page attends.
-const ATTENDED: [&str; 9] =
-    ["real_time", "frame", "dry_run", "step", "points", "mark", "pace", "each", "from_stroke"];
+const ATTENDED: [&str; 10] =
+    ["real_time", "frame", "dry_run", "step", "points", "mark", "pace", "each", "from_stroke", "sim_trouble"];
 
 /// Of what flags are asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,20 +83,20 @@ const MOST_BYTES: usize = 200;
 /// How often a flag may be repeated.
 const MOST_TIMES: usize = 100;
 
-/// The arguments that these flags are, with heads of these names; a flag that is null, false or empty is left out.
+/// The arguments that these flags are, with files of these names; a flag that is null, false or empty is left out.
 ///
 /// # Errors
 /// `usage`: one that there is not, or a value that none has.
 pub(crate) fn arguments(
     flags: &Map<String, Value>,
     which: Which,
-    rigs: &Rigs,
+    names: &Names,
 ) -> Result<Vec<String>, Failure> {
     let is_as_before = |name: &str| which == Which::Rest && Which::Attended.has(name) && !which.has(name);
     if let Some((name, _)) = flags.iter().find(|(name, _)| is_as_before(name)) {
         return Err(refused(format!("{name} is as it was when the run was begun: leave it out")));
     }
-    named_values(flags, |name| which.has(name), rigs)
+    named_values(flags, |name| which.has(name), names)
 }
 
 /// The arguments that flags are, of those that there are; a flag that is null, false or empty is left out.
@@ -103,7 +106,7 @@ pub(crate) fn arguments(
 pub(crate) fn named_values(
     flags: &Map<String, Value>,
     has: impl Fn(&str) -> bool,
-    rigs: &Rigs,
+    names: &Names,
 ) -> Result<Vec<String>, Failure> {
     let mut arguments = Vec::new();
     for (name, value) in flags {
@@ -118,16 +121,16 @@ pub(crate) fn named_values(
             Value::Bool(true) => arguments.push(format!("--{flag}")),
             Value::Array(values) if values.len() <= MOST_TIMES => {
                 for value in values {
-                    arguments.extend(argument(&flag, value, rigs)?);
+                    arguments.extend(argument(&flag, value, names)?);
                 }
             }
-            value => arguments.extend(argument(&flag, value, rigs)?),
+            value => arguments.extend(argument(&flag, value, names)?),
         }
     }
     Ok(arguments)
 }
 
-fn argument(flag: &str, value: &Value, rigs: &Rigs) -> Result<Option<String>, Failure> {
+fn argument(flag: &str, value: &Value, names: &Names) -> Result<Option<String>, Failure> {
     let text = match value {
         Value::String(text) => text.trim().to_owned(),
         Value::Number(number) => number.to_string(),
@@ -136,11 +139,16 @@ fn argument(flag: &str, value: &Value, rigs: &Rigs) -> Result<Option<String>, Fa
     if text.len() > MOST_BYTES || text.contains(|c: char| c.is_control()) {
         return Err(refused(format!("{flag} is longer than {MOST_BYTES} bytes, or not one line")));
     }
-    if flag == "rig" && !text.is_empty() {
-        let names = || rigs.names().collect::<Vec<_>>().join(", ");
+    if let Some(kind) = Names::kind_of(flag).filter(|_| !text.is_empty()) {
+        let all: Vec<&str> = names.all(kind).collect();
+        let all = if all.is_empty() {
+            "none that there is".to_owned()
+        } else {
+            format!("one of {}", all.join(", "))
+        };
         let value =
-            rigs.value(&text).ok_or_else(|| refused(format!("rig is one of {}; it is {text}", names())))?;
-        return Ok(Some(format!("--rig={value}")));
+            names.value(kind, &text).ok_or_else(|| refused(format!("{flag} is {all}; it is {text}")))?;
+        return Ok(Some(format!("--{flag}={value}")));
     }
     // with its value in one argument: no value can be taken for another flag
     Ok((!text.is_empty()).then(|| format!("--{flag}={text}")))
@@ -204,7 +212,7 @@ mod tests {
 
     fn of(flags: Value) -> Result<Vec<String>, Failure> {
         let Value::Object(flags) = flags else { unreachable!() };
-        arguments(&flags, Which::Drawing, &Rigs::of_presets(&["report", "worn"]))
+        arguments(&flags, Which::Drawing, &Names::of_presets(&["report", "worn"]))
     }
 
     #[test]
@@ -230,7 +238,7 @@ mod tests {
         assert_eq!((picture, Value::Object(flags)), ("/x/house.png", asked));
         // of a terminal's own
         for other in
-            [&["plan", "x.png"][..], &["trace", "x.png", "--seed=3"], &["trace", "x.png", "-o"], &["trace"]]
+            [&["plan", "x.png"][..], &["trace", "x.png", "--laps=3"], &["trace", "x.png", "-o"], &["trace"]]
         {
             let other: Vec<String> = other.iter().map(|&word| word.to_owned()).collect();
             assert!(asked_by(&other).is_none(), "{other:?}");

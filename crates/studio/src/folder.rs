@@ -1,4 +1,4 @@
-//! The studio's folder: pictures that were given to it, and the runs made of them.
+//! The studio's folder: pictures that were given to it, the runs made of them, and files of rigs, cameras and heads.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -72,7 +72,9 @@ impl Folder {
         // from the root: no name of it is taken for a flag
         let dir = std::path::absolute(dir).map_err(|e| cannot_write(dir, &e))?;
         let folder = Self { dir };
-        for part in [folder.pictures(), folder.runs(), folder.dir.join(Kind::Rigs.word())] {
+        for part in [Kind::Pictures, Kind::Runs, Kind::Rigs, Kind::Cameras, Kind::Heads]
+            .map(|kind| folder.place(kind))
+        {
             fs::create_dir_all(&part).map_err(|e| cannot_write(&part, &e))?;
         }
         for (name, bytes) in EXAMPLES {
@@ -87,12 +89,17 @@ impl Folder {
         &self.dir
     }
 
+    /// Where what is of a kind lies.
+    pub(crate) fn place(&self, kind: Kind) -> PathBuf {
+        self.dir.join(kind.word())
+    }
+
     fn pictures(&self) -> PathBuf {
-        self.dir.join("pictures")
+        self.place(Kind::Pictures)
     }
 
     pub(crate) fn runs(&self) -> PathBuf {
-        self.dir.join("runs")
+        self.place(Kind::Runs)
     }
 
     /// Takes a picture in; its id. One of the same name and other bytes keeps its place.
@@ -266,7 +273,7 @@ impl Folder {
         let found = match kind {
             Kind::Runs => self.run(id),
             Kind::Pictures => self.picture(id),
-            Kind::Rigs => self.rig(id),
+            Kind::Rigs | Kind::Cameras | Kind::Heads => self.own(kind, id),
         };
         let Some(path) = found else {
             return Err(Failure::usage(
@@ -310,11 +317,11 @@ impl Folder {
         if !is_own || !from.exists() {
             return Err(Failure::usage("unreadable", format!("there is no {name:?} in the studio's trash")));
         }
-        let to = self.dir.join(kind.word()).join(id);
+        let to = self.place(kind).join(id);
         // its place is taken first, so that nobody's newer one gives way
         let taken = match kind {
             Kind::Runs => fs::create_dir(&to),
-            Kind::Pictures | Kind::Rigs => fs::File::create_new(&to).map(drop),
+            Kind::Pictures | Kind::Rigs | Kind::Cameras | Kind::Heads => fs::File::create_new(&to).map(drop),
         };
         match taken.and_then(|()| fs::rename(&from, &to)) {
             Ok(()) => Ok(id.to_owned()),
@@ -339,6 +346,8 @@ pub(crate) enum Kind {
     Pictures,
     Runs,
     Rigs,
+    Cameras,
+    Heads,
 }
 
 impl Kind {
@@ -347,6 +356,8 @@ impl Kind {
             Self::Pictures => "pictures",
             Self::Runs => "runs",
             Self::Rigs => "rigs",
+            Self::Cameras => "cameras",
+            Self::Heads => "heads",
         }
     }
 }

@@ -137,7 +137,7 @@ fn may(caller: &Caller, path: &str, is_read: bool) -> Result<(), Refused> {
     }
 }
 
-fn forbidden(why: &str) -> Refused {
+pub(crate) fn forbidden(why: &str) -> Refused {
     Refused::with(StatusCode::FORBIDDEN, Failure::usage("not-allowed", why))
 }
 

@@ -5,8 +5,8 @@ use tracelight_task::Failure;
 
 use crate::desk::Desk;
 use crate::flags::{asked_by, mode_of};
-use crate::folder::no_run;
-use crate::rig_names::Rigs;
+use crate::folder::{Kind, no_run};
+use crate::names::Names;
 
 /// The head that a command line names.
 fn rig_of(command: &[String]) -> Option<&str> {
@@ -21,15 +21,15 @@ impl Desk {
     /// What the program says.
     pub(crate) fn runs(&self) -> Result<Value, Failure> {
         let mut told = self.ask(&["runs", &self.folder.runs().to_string_lossy(), "--json"])?;
-        let rigs = self.known_rigs();
+        let names = self.names();
         for run in told["runs"].as_array_mut().into_iter().flatten() {
-            self.know(run, &rigs);
+            self.know(run, &names);
         }
         Ok(told)
     }
 
     /// Adds a run's id, its files, and the picture and flags that it was asked by; null where no page can ask so.
-    fn know(&self, run: &mut Value, rigs: &Rigs) {
+    fn know(&self, run: &mut Value, names: &Names) {
         let id = run["folder"]
             .as_str()
             .and_then(|dir| dir.rsplit(['/', '\\']).next())
@@ -38,17 +38,19 @@ impl Desk {
         let command = run["command"].as_array().into_iter().flatten();
         let command: Vec<String> = command.filter_map(Value::as_str).map(str::to_owned).collect();
         let asked = asked_by(&command).and_then(|(path, flags)| {
-            let picture = self.folder.id_of(path)?;
+            let picture = self.id_of_source(path)?;
             Some((picture, flags))
         });
         let (picture, mut flags) = asked.unzip();
-        if let Some(flags) = &mut flags {
-            let rig = flags.remove("rig");
-            // another head, or none, is there now
-            let name = rig.as_ref().and_then(Value::as_str).and_then(|rig| rigs.name_of(rig));
-            flags.extend(name.map(|name| ("rig".to_owned(), json!(name))));
+        for flag in ["rig", "head", "calibration"] {
+            let Some(flags) = &mut flags else { break };
+            let value = flags.remove(flag);
+            // another one, or none, is there now
+            let name = Names::kind_of(flag).zip(value.as_ref().and_then(Value::as_str));
+            let name = name.and_then(|(kind, value)| names.name_of(kind, value));
+            flags.extend(name.map(|name| (flag.to_owned(), json!(name))));
         }
-        run["rig"] = json!(rig_of(&command).map(|rig| rigs.name_of(rig).unwrap_or(rig)));
+        run["rig"] = json!(rig_of(&command).map(|rig| names.name_of(Kind::Rigs, rig).unwrap_or(rig)));
         run["mode"] = json!(mode_of(&command));
         run["files"] = json!(self.folder.run_files(&id));
         (run["id"], run["picture"], run["flags"]) = (json!(id), json!(picture), json!(flags));
@@ -78,8 +80,8 @@ impl Desk {
     /// `unreadable`; what the program says.
     pub(crate) fn compare(&self, first: &str, second: &str) -> Result<Value, Failure> {
         let mut told = self.ask(&["compare", &self.run_dir(first)?, &self.run_dir(second)?, "--json"])?;
-        let rigs = self.known_rigs();
-        ["first", "second"].into_iter().for_each(|of| self.know(&mut told[of], &rigs));
+        let names = self.names();
+        ["first", "second"].into_iter().for_each(|of| self.know(&mut told[of], &names));
         Ok(told)
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
@@ -11,8 +12,9 @@ use tracelight_task::{Failure, nearest};
 use crate::desk::Desk;
 use crate::flags::{named_values, typed};
 use crate::folder::Folder;
-use crate::rig_names::Rigs;
-use crate::tasks::failure_json;
+use crate::names::Names;
+use crate::program::Performed;
+use crate::tasks::{AtLast, Work, failure_json};
 
 /// What a page asks.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -49,10 +51,12 @@ struct Kind {
     flags: &'static [&'static str],
     /// Whether it writes a folder with its plot and a rig file, and not a plot alone.
     makes_rig: bool,
+    /// Whether it can take long: it is for who operates.
+    is_long: bool,
 }
 
 const fn kind(name: &'static str, of: Subject, flags: &'static [&'static str]) -> Kind {
-    Kind { name, of, flags, makes_rig: false }
+    Kind { name, of, flags, makes_rig: false, is_long: false }
 }
 
 /// All of them: those that take a moment, and read no file.
@@ -76,6 +80,7 @@ const EXPERIMENTS: [Kind; 15] = [
     ),
     Kind {
         makes_rig: true,
+        is_long: true,
         ..kind(
             "tune",
             Subject::Head,
@@ -94,18 +99,24 @@ const EXPERIMENTS: [Kind; 15] = [
             ],
         )
     },
-    kind(
-        "montecarlo",
-        Subject::Head,
-        &["plants", "shape", "law", "observer", "laps", "speed", "lit_speed", "seed", "rig"],
-    ),
+    Kind {
+        is_long: true,
+        ..kind(
+            "montecarlo",
+            Subject::Head,
+            &["plants", "shape", "law", "observer", "laps", "speed", "lit_speed", "seed", "rig"],
+        )
+    },
     kind(
         "relay",
         Subject::Head,
         &["axis", "level", "hysteresis", "crossover", "phase_margin", "to", "seed", "rig"],
     ),
     kind("profile", Subject::Head, &["distance", "vmax", "amax", "dmax", "profile"]),
-    kind("velocity", Subject::Head, &["speeds", "intervals", "law", "observer", "seed", "rig"]),
+    Kind {
+        is_long: true,
+        ..kind("velocity", Subject::Head, &["speeds", "intervals", "law", "observer", "seed", "rig"])
+    },
     kind("lesson", Subject::Lesson, &["answer"]),
 ];
 /// Counts that would take minutes, and the most of them.
@@ -126,11 +137,16 @@ impl Experiment {
         })
     }
 
+    /// Whether it can take long; an experiment that there is not takes no time.
+    pub(crate) fn is_long(&self) -> bool {
+        self.kind().is_ok_and(|kind| kind.is_long)
+    }
+
     /// The command line, without where its plot goes.
     ///
     /// # Errors
     /// `usage` of another experiment, or of what could read a file.
-    fn command(&self, rigs: &Rigs) -> Result<Vec<String>, Failure> {
+    fn command(&self, names: &Names) -> Result<Vec<String>, Failure> {
         let Self { command, of, flags } = self;
         let kind = self.kind()?;
         let has = |flag: &str| {
@@ -138,7 +154,7 @@ impl Experiment {
         };
         let mut all: Vec<String> =
             std::iter::once("lab").chain(command.split(' ')).map(str::to_owned).collect();
-        all.extend(named_values(flags, has, rigs)?);
+        all.extend(named_values(flags, has, names)?);
         all.iter().try_for_each(|word| is_quick(word))?;
         // however often it is given
         all.iter().filter_map(|word| word.strip_prefix("--controller=")).try_for_each(is_formula)?;
@@ -193,10 +209,16 @@ impl Desk {
     ///
     /// # Errors
     /// What is wrong with it; what the program says.
-    pub(crate) fn experiment(&self, asked: &Experiment) -> Result<Value, Failure> {
-        let command = asked.command(&self.known_rigs())?;
+    pub(crate) fn experiment(
+        &self,
+        asked: &Experiment,
+        (work, operates): (Arc<Work>, bool),
+    ) -> Result<Value, Failure> {
+        work.stop.check()?;
+        let command = asked.command(&self.names())?;
         let kind = asked.kind()?;
-        let work = self.work();
+        let _last = AtLast(Arc::clone(&work));
+        self.begin_experiment(&work);
         let (plot, made) = (self.folder.plot(work.id), self.folder.made(work.id));
         let at = 1 + kind.name.split(' ').count();
         let with = |more: &[&str]| -> Vec<String> {
@@ -205,32 +227,27 @@ impl Desk {
         };
         let to = if kind.makes_rig { &made } else { &plot }.to_string_lossy();
         let out = ["--out", &to];
-        let figures = self.program.perform(
-            &with(&[&["--json", "--quiet"], &out[..]].concat()),
+        let done = self.program.perform(
+            &with(&[&["--json", "--words", "--quiet"], &out[..]].concat()),
             None,
             (&*work, &work.stop),
         );
-        let words = figures.is_ok().then(|| {
-            // a folder is written anew, a plot is there
-            let again: &[&str] = if kind.makes_rig { &out } else { &[] };
-            self.program.perform(&with(&[&["--quiet"], again].concat()), None, (&*work, &work.stop))
-        });
         let svg = fs::read_to_string(if kind.makes_rig { made.join("tune.svg") } else { plot.clone() });
         let rig = fs::read_to_string(made.join("rig.toml")).ok();
         // what cannot be removed is written over another time
         let _ = fs::remove_file(&plot);
         let _ = fs::remove_dir_all(&made);
-        let (figures, words) = (figures?, words.transpose()?);
-        let answer: Value = serde_json::from_str(&figures.json).unwrap_or(Value::Null);
-        if kind.of == Subject::Lesson && figures.failure.is_none() && asked.flags.contains_key("answer") {
+        let Performed { json, text, failure } = done?;
+        let answer: Value = serde_json::from_str(&json).unwrap_or(Value::Null);
+        let answers = command.iter().any(|word| word.starts_with("--answer="));
+        if operates && kind.of == Subject::Lesson && failure.is_none() && answers {
             self.folder.passed(asked.of.first().map_or("", String::as_str))?;
         }
         // where its files were is nobody's to know
-        let words = words.map_or_else(String::new, |words| words.text);
-        let words: Vec<&str> = words.lines().filter(|line| !line.contains(&*to)).collect();
+        let words: Vec<&str> = text.lines().filter(|line| !line.contains(&*to)).collect();
         Ok(json!({
             "command": typed(&command), "answer": answer, "words": words.join("\n").trim_end(), "svg": svg.unwrap_or_default(), "rig": rig,
-            "failure": figures.failure.as_ref().map(failure_json),
+            "failure": failure.as_ref().map(failure_json),
         }))
     }
 
@@ -276,7 +293,23 @@ mod tests {
     use super::*;
 
     fn of(asked: Value) -> Result<Vec<String>, Failure> {
-        serde_json::from_value::<Experiment>(asked).unwrap().command(&Rigs::of_presets(&["report"]))
+        serde_json::from_value::<Experiment>(asked).unwrap().command(&Names::of_presets(&["report"]))
+    }
+
+    #[test]
+    fn all_experiments_are_described() {
+        let described: Value = serde_json::from_str(include_str!("openapi.json")).unwrap();
+        let asked =
+            &described["paths"]["/lab"]["post"]["requestBody"]["content"]["application/json"]["schema"];
+        let names: Vec<&str> = EXPERIMENTS.iter().map(|kind| kind.name).collect();
+        let mut described: Vec<&str> = asked["properties"]["command"]["enum"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter_map(Value::as_str)
+            .collect();
+        described.sort_unstable_by_key(|name| names.iter().position(|known| known == name));
+        assert_eq!(described, names);
     }
 
     #[test]

@@ -5,6 +5,9 @@
 //! computer alone, unless devices of the network are to be invited.
 
 mod assets;
+mod beside;
+mod calibrations;
+mod cameras;
 mod desk;
 mod devices;
 mod door;
@@ -17,10 +20,10 @@ mod house;
 mod lab;
 mod lan;
 mod live;
+mod names;
 mod points;
 mod program;
 mod refused;
-mod rig_names;
 mod rigs;
 mod sent;
 mod serve;
@@ -28,6 +31,8 @@ mod server;
 mod session;
 mod socket;
 mod tasks;
+mod watch;
+mod watching;
 
-pub use program::{Head, Performed, Program, Seat};
+pub use program::{Camera, Head, Performed, Program, Seat};
 pub use serve::{Invitation, Studio, open};

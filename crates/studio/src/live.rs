@@ -26,7 +26,7 @@ const MOST_BEHIND: usize = 512;
 /// Wishes that wait for a tick.
 const MOST_WISHES: usize = 64;
 /// Kinds of events of which a page is told the last one that comes later.
-const KEPT: [&str; 6] = ["head", "preflight", "frame", "point", "fault", "looks"];
+const KEPT: [&str; 7] = ["head", "preflight", "frame", "point", "fault", "looks", "seen"];
 /// What stops a job, whoever says it.
 const STOP: &str = "stop";
 

@@ -13,6 +13,22 @@ pub trait Program: Send + Sync + 'static {
         None
     }
 
+    /// Cameras that are plugged in, or that were named when the studio was opened.
+    fn cameras(&self) -> Vec<Camera> {
+        Vec::new()
+    }
+
+    /// Looks through the camera of a command line of `calibrate look`, and shows one image after the other, as JPEG and by what is in it, until `each` wants no more.
+    ///
+    /// # Errors
+    /// What is wrong with it, or what the camera fails with.
+    fn look(
+        &self,
+        arguments: &[String],
+        stop: &Stop,
+        each: &mut dyn FnMut(Vec<u8>, Value) -> bool,
+    ) -> Result<(), Failure>;
+
     /// Whether somebody who attends a job may ask that of it.
     fn knows(&self, wish: &str) -> bool;
 
@@ -39,6 +55,17 @@ pub struct Head {
     pub is_at_port: bool,
     /// Its board says that it moves a real head, or what it says is not known.
     pub is_real: bool,
+}
+
+/// A camera that pages may look through.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Camera {
+    /// What pages call it: letters and digits.
+    pub id: String,
+    /// What people call it.
+    pub name: String,
+    /// The value of `--camera`.
+    pub source: String,
 }
 
 /// Where somebody sits who attends a job.

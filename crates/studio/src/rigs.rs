@@ -8,7 +8,8 @@ use tracelight_files as files;
 use tracelight_task::Failure;
 
 use crate::desk::Desk;
-use crate::rig_names::{KIND, Rigs, is_rig_name};
+use crate::folder::Kind;
+use crate::names::{KIND, Names, is_own_name};
 use crate::tasks::failure_json;
 
 /// Longest rig file, bytes.
@@ -22,14 +23,21 @@ pub(crate) struct Written {
     /// Whether it is looked at only, and nothing is kept.
     #[serde(default)]
     only_check: bool,
+    /// What the file said when it was read, empty where there was none: what says something else by now is somebody else's work, and stays.
+    #[serde(default)]
+    before: Option<String>,
 }
 
 impl Desk {
-    /// Heads that a page may choose.
-    pub(crate) fn known_rigs(&self) -> Rigs {
-        let path = |name: &String| self.folder.rig(name).map(|path| path.to_string_lossy().into_owned());
-        let own = self.folder.rig_names().into_iter().filter_map(|name| Some((name.clone(), path(&name)?)));
-        Rigs { presets: self.program.rigs(), own: own.collect() }
+    /// Rigs, calibrations and heads that a page may choose.
+    pub(crate) fn names(&self) -> Names {
+        let own = |kind| self.folder.own_files(kind);
+        Names {
+            presets: self.program.rigs(),
+            rigs: own(Kind::Rigs),
+            cameras: own(Kind::Cameras),
+            heads: own(Kind::Heads),
+        }
     }
 
     /// All rigs: presets with what they are, and files of the folder with what is wrong with them, if anything.
@@ -40,8 +48,8 @@ impl Desk {
         let told = self.ask(&["rigs", "--json"])?;
         let presets = told["rigs"].as_array().into_iter().flatten();
         let presets = presets.map(|rig| json!({ "name": rig["name"], "own": false, "description": rig["description"], "problem": null }));
-        let own = self.folder.rig_names().into_iter().filter_map(|name| {
-            let text = fs::read_to_string(self.folder.rig(&name)?).ok()?;
+        let own = self.folder.own_names(Kind::Rigs).into_iter().filter_map(|name| {
+            let text = fs::read_to_string(self.folder.own(Kind::Rigs, &name)?).ok()?;
             let problem = self.checked(&name, &text).err().as_ref().map(failure_json);
             Some(json!({ "name": name, "own": true, "description": "", "problem": problem }))
         });
@@ -53,7 +61,7 @@ impl Desk {
     /// # Errors
     /// `unreadable` where there is none; what the program says.
     pub(crate) fn rig_text(&self, name: &str) -> Result<Value, Failure> {
-        if let Some(path) = self.folder.rig(name) {
+        if let Some(path) = self.folder.own(Kind::Rigs, name) {
             let text = String::from_utf8_lossy(&files::read(&path.to_string_lossy())?).into_owned();
             return Ok(json!({ "name": name, "own": true, "toml": text }));
         }
@@ -67,9 +75,9 @@ impl Desk {
     /// Looks whether a text is a rig file, and keeps it under that name unless it is only looked at.
     ///
     /// # Errors
-    /// `usage` of a name that none has; `rig-file` with line and column; `cannot-write`.
+    /// `usage` of a name that none has; `rig-file` with line and column; `busy` where it says something else than what it is to replace; `cannot-write`.
     pub(crate) fn write_rig(&self, name: &str, written: &Written) -> Result<Value, Failure> {
-        if !is_rig_name(name) {
+        if !is_own_name(name) {
             return Err(Failure::usage(
                 "usage",
                 format!(
@@ -83,8 +91,21 @@ impl Desk {
         }
         let remarks = self.checked(name, &written.toml)?;
         if !written.only_check {
-            let path = self.folder.rigs().join(name);
-            fs::create_dir_all(self.folder.rigs()).map_err(|e| {
+            // one at a time: what was there is looked at, and then replaced
+            let _writes = self.writes();
+            let path = self.folder.place(Kind::Rigs).join(name);
+            let is = fs::read_to_string(&path).unwrap_or_default();
+            if written.before.as_ref().is_some_and(|before| *before != is) {
+                let message = if written.before.as_deref() == Some("") {
+                    format!("there is a rig {name} already: give the new one another name")
+                } else {
+                    format!(
+                        "{name} was changed elsewhere since it was read: copy what you wrote, read it again, and put it in"
+                    )
+                };
+                return Err(Failure::failed("busy", message));
+            }
+            fs::create_dir_all(self.folder.place(Kind::Rigs)).map_err(|e| {
                 Failure::failed("cannot-write", format!("cannot write {}: {e}", path.display()))
             })?;
             let to = path.to_string_lossy();
@@ -103,7 +124,7 @@ impl Desk {
         let command = ["rigs", "show", &path, "--json"].map(str::to_owned);
         let read = self.program.perform(&command, None, (&*work, &work.stop));
         // what cannot be removed is written over another time
-        let _ = fs::remove_file(&path);
+        let _ = files::remove_read(std::path::Path::new(&path));
         let named = |text: &str| text.replace(&path, name);
         match read {
             Ok(_) => Ok(work.remarks().iter().map(|remark| named(remark)).collect()),

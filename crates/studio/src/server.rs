@@ -17,11 +17,10 @@ use axum::routing::{delete, get, post};
 use axum::{Json, Router};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
-use tokio::task::spawn_blocking;
-use tracelight_task::Failure;
 
 use crate::assets::packed;
-use crate::desk::{Desk, Subject, Wanted};
+use crate::beside::{Shared, beside, discard, only_operators};
+use crate::desk::{Subject, Wanted};
 use crate::devices::Caller;
 use crate::door::Place;
 use crate::folder::{EXAMPLES, Kind};
@@ -34,7 +33,9 @@ use crate::rigs::Written;
 use crate::sent::sent;
 use crate::session;
 use crate::socket::{MOST_MESSAGE, ask, serve_socket, watch_operator};
-use crate::tasks::broken;
+use crate::tasks::Wanting;
+use crate::watch::as_camera;
+use crate::watching;
 
 /// Everything there is, for who comes in by that door.
 pub(crate) fn router(house: House, door: Door) -> Router {
@@ -63,6 +64,12 @@ pub(crate) fn router(house: House, door: Door) -> Router {
         .route("/runs/{run}/files/{name}", get(run_file))
         .route("/rigs", get(rigs))
         .route("/rigs/{name}", get(rig).put(write_rig).delete(discard_rig))
+        .route("/cameras", get(watching::cameras))
+        .route("/cameras/{id}/look", get(watching::look))
+        .route("/cameras/{id}/images/{number}", get(watching::image))
+        .route("/calibrations", get(watching::calibrations).post(watching::calibrate))
+        .route("/calibrations/pages.pdf", get(watching::printed))
+        .route("/calibrations/{kind}/{name}", delete(watching::discard))
         .route("/trash/{kind}/{name}", post(restore))
         .route("/compare", get(compare));
     Router::new()
@@ -77,16 +84,6 @@ pub(crate) fn router(house: House, door: Door) -> Router {
         .layer(DefaultBodyLimit::disable())
         .layer(from_fn_with_state(door, guard))
         .with_state(house)
-}
-
-type Shared = State<Arc<Desk>>;
-
-/// Does work that computes or reads files beside what answers.
-async fn beside<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
-) -> Result<T, Refused> {
-    let done = spawn_blocking(work).await;
-    done.unwrap_or_else(|_| Err(broken())).map_err(Refused::from)
 }
 
 async fn about(State(desk): Shared) -> Json<Value> {
@@ -174,6 +171,10 @@ async fn plan(
     bytes: Bytes,
 ) -> Result<Json<Value>, Refused> {
     let Asked { picture, flags, page, number, .. } = asked(&bytes)?;
+    if let Some(camera) = as_camera(&picture) {
+        only_operators(&caller)?;
+        desk.watching.free(camera).await;
+    }
     let _waits = desk.waits(&caller)?;
     // a page of another device is another page, whatever it calls itself
     let page = if page.is_empty() { page } else { format!("{}:{page}", caller.device) };
@@ -204,6 +205,9 @@ async fn trace(State(desk): Shared, bytes: Bytes) -> Result<(StatusCode, Json<Va
     let Asked { picture, rest_of, flags, page, attended, .. } = asked(&bytes)?;
     if attended && page.is_empty() {
         return Err(Refused::usage("a job that is attended names the page that operates it"));
+    }
+    if let Some(camera) = as_camera(&picture) {
+        desk.watching.free(camera).await;
     }
     let threads = tokio::runtime::Handle::current();
     // begun where nobody who leaves can interrupt it; it goes on when nobody looks any more
@@ -279,11 +283,18 @@ async fn lab(
             "an experiment is asked for by {{\"command\": \"bode\", \"of\": [FORMULA], \"flags\": {{…}}}}: {e}"
         ))
     })?;
+    if asked.is_long() {
+        only_operators(&caller)?;
+    }
     let _waits = desk.waits(&caller)?;
+    let work = desk.work();
+    // who leaves wants nothing of it any more
+    let _wanted = Wanting(Arc::clone(&work));
     let turn = Arc::clone(&desk.experimenting).lock_owned().await;
+    let operates = caller.operates();
     beside(move || {
         let _turn = turn;
-        desk.experiment(&asked)
+        desk.experiment(&asked, (work, operates))
     })
     .await
     .map(Json)
@@ -348,11 +359,6 @@ async fn write_rig(
     let written: Written = serde_json::from_slice(&bytes)
         .map_err(|e| Refused::usage(format!("a rig file is written by {{\"toml\": TEXT}}: {e}")))?;
     beside(move || desk.write_rig(&name, &written)).await.map(Json)
-}
-
-async fn discard(State(desk): Shared, kind: Kind, id: String) -> Result<Json<Value>, Refused> {
-    let done = beside(move || desk.folder.discard(kind, &id)).await;
-    done.map(|name| Json(json!({ "in_trash": name }))).map_err(Refused::of_path)
 }
 
 async fn restore(

@@ -146,6 +146,15 @@ mod tests {
             Vec::new()
         }
 
+        fn look(
+            &self,
+            _: &[String],
+            _: &Stop,
+            _: &mut dyn FnMut(Vec<u8>, Value) -> bool,
+        ) -> Result<(), Failure> {
+            Ok(())
+        }
+
         fn knows(&self, wish: &str) -> bool {
             ["arm", "go-on", "stop", "end", "speed=0.5"].contains(&wish)
         }

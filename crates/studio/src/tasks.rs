@@ -37,6 +37,15 @@ impl Drop for AtLast {
     }
 }
 
+/// Somebody who waits for a piece of work: without him it ends.
+pub(crate) struct Wanting(pub(crate) Arc<Work>);
+
+impl Drop for Wanting {
+    fn drop(&mut self) {
+        self.0.stop.want();
+    }
+}
+
 /// What is told of work that panicked.
 pub(crate) fn broken() -> Failure {
     Failure::failed("internal", "the work ended in a way that it must not: please tell us")

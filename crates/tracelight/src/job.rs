@@ -43,6 +43,14 @@ pub(crate) fn trace(args: &TraceArgs, seat: Option<&dyn Seat>, task: Task<'_>) -
     run(args, (None, seat), task)
 }
 
+/// What a camera sees, planned: a simulated head is found by its dots meanwhile, unless it is known where it stands.
+///
+/// # Errors
+/// As of [`trace`].
+pub(crate) fn seen(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
+    prepared(args, task).map(|(prepared, _)| prepared)
+}
+
 /// The rest of a run that ended on its way, as a run of its own.
 pub(crate) fn resume(
     args: &TraceArgs,

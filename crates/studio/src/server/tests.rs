@@ -5,9 +5,10 @@ use axum::body::Body;
 use axum::http::Request;
 use http_body_util::BodyExt as _;
 use tower::ServiceExt as _;
-use tracelight_task::{Progress, Stop};
+use tracelight_task::{Failure, Progress, Stop};
 
 use super::*;
+use crate::desk::Desk;
 use crate::devices::Devices;
 use crate::folder::Folder;
 use crate::lan::Lan;
@@ -16,6 +17,7 @@ use crate::program::{Performed, Program, Seat};
 mod history;
 mod network;
 mod openapi;
+mod watching;
 
 /// A program that notes what it is to do, plans two ticks, and traces until it is stopped or let go on.
 struct Noting {
@@ -27,6 +29,19 @@ struct Noting {
 impl Program for Noting {
     fn rigs(&self) -> Vec<String> {
         vec!["report".to_owned()]
+    }
+
+    fn look(
+        &self,
+        _: &[String],
+        stop: &Stop,
+        each: &mut dyn FnMut(Vec<u8>, Value) -> bool,
+    ) -> Result<(), Failure> {
+        while each(b"image".to_vec(), json!({ "markers": [] })) {
+            stop.check()?;
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        Ok(())
     }
 
     fn knows(&self, wish: &str) -> bool {
@@ -67,6 +82,14 @@ impl Program for Noting {
                 }
                 std::thread::sleep(std::time::Duration::from_millis(2));
             },
+            "calibrate" if arguments[1] == "show" => {
+                Ok(done(r#"{"calibrations":[{"file":"x","of":"head","date":"2026-12-01"}]}"#))
+            }
+            "calibrate" => {
+                let file = arguments.iter().find_map(|argument| argument.strip_prefix("--output=")).unwrap();
+                std::fs::write(file, format!("# {}", arguments[1])).unwrap();
+                Ok(Performed { text: format!("file: {file}"), ..done("{}") })
+            }
             "explain" => panic!("a program that must not"),
             _ => Ok(done(&self.runs.lock().unwrap())),
         }
@@ -126,6 +149,12 @@ impl Studio {
         let request =
             Request::post(path).header("host", "localhost:4460").header("origin", "http://localhost:4460");
         let (status, _, body) = self.send(request.body(body.into()).unwrap()).await;
+        (status, serde_json::from_slice(&body).unwrap_or(Value::Null))
+    }
+
+    async fn put(&self, path: &str, body: impl Into<Body>) -> (StatusCode, Value) {
+        let request = Request::put(path).header("host", "localhost:4460").body(body.into()).unwrap();
+        let (status, _, body) = self.send(request).await;
         (status, serde_json::from_slice(&body).unwrap_or(Value::Null))
     }
 

@@ -15,6 +15,9 @@ pub(crate) struct Voice {
     /// No progress and no remarks on standard error
     #[arg(long, global = true)]
     pub(crate) quiet: bool,
+    /// What people are told is made too, for somebody who shows both
+    #[arg(long, global = true, hide = true, requires = "json")]
+    pub(crate) words: bool,
 }
 
 /// What work comes to that tells how far it is.
@@ -36,9 +39,13 @@ impl Answer {
         Self { text: text.into(), json: json.into(), failure: None }
     }
 
-    /// The one that will be printed; the other is not made.
+    /// The one that will be printed, or both; what nobody reads is not made.
     pub(crate) fn either(voice: Voice, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Self {
-        if voice.json { Self::new("", json()) } else { Self::new(text(), "") }
+        match (voice.json, voice.words) {
+            (true, true) => Self::new(text(), json()),
+            (true, false) => Self::new("", json()),
+            (false, _) => Self::new(text(), ""),
+        }
     }
 }
 
@@ -47,6 +54,10 @@ pub(crate) type Performs = fn(&[&str], &Stop) -> Result<Answer, Failure>;
 
 /// The same for somebody who shows by himself how far it is, and may attend it.
 pub(crate) type PerformsWith = fn(&[String], Option<&dyn Seat>, Task<'_>) -> Result<Answer, Failure>;
+
+/// Looks through a camera as a command line says, and shows somebody one image after the other, as JPEG and in figures, until he wants no more.
+pub(crate) type LooksFor =
+    fn(&[String], &Stop, &mut dyn FnMut(Vec<u8>, serde_json::Value) -> bool) -> Result<(), Failure>;
 
 /// To standard output; a reader that has left is no error.
 ///

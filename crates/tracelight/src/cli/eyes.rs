@@ -3,10 +3,15 @@
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
+use tracelight_aim::HeadPose;
 use tracelight_camera::{Opened, Source};
-use tracelight_eye::room::SimulatedEye;
+use tracelight_eye::Looks;
+use tracelight_eye::room::{Furnished, RoomRequest, SimulatedEye};
 use tracelight_eye::trouble::TroubleAt;
+use tracelight_pipeline::{DEFAULT_DISTANCE_M, Placing};
 use tracelight_rigfile::camera::KnownCamera;
+use tracelight_session::Session;
+use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
 use crate::named;
@@ -55,6 +60,30 @@ impl SimulatedEyeName {
             SimulatedEyeName::Report => SimulatedEye::Report,
         }
     }
+}
+
+/// What is before a simulated camera.
+pub(crate) struct SimulatedWall {
+    pub(crate) eye: SimulatedEyeName,
+    /// Where its picture hangs.
+    pub(crate) placing: Placing,
+    /// Whether pages of markers hang there.
+    pub(crate) pages: bool,
+    pub(crate) seed: u64,
+}
+
+/// A camera that takes images when told: one that was opened, or that of a simulated room.
+pub(crate) fn looking(opened: Opened<'_>, wall: &SimulatedWall) -> Result<Box<dyn Looks>, Failure> {
+    let picture = match opened {
+        Opened::Camera(camera) => return Ok(camera),
+        Opened::Simulated(picture) => picture.map(named::painted).transpose()?,
+    };
+    let (rig, pose) = (RigConfig::report(), HeadPose::square_on(DEFAULT_DISTANCE_M));
+    let SimulatedWall { eye, placing, pages, seed } = wall;
+    let request =
+        RoomRequest { picture: picture.as_ref(), placing, eye: eye.eye(), pages: *pages, seed: *seed };
+    let room = Furnished::new(&request, &rig, pose)?.watched(&rig, pose);
+    Ok(Box::new(Session::new(room)))
 }
 
 /// How a camera follows the spot while it draws.

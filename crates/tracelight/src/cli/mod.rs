@@ -126,17 +126,19 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
     match command {
         Command::Trace(args) => (args.voice, watched(args.voice, stop, |task| trace::run(args, None, task))),
         Command::Strokes(args) => (args.voice, strokes::run(args, stop)),
-        Command::Plan(args) => (args.voice, watched(args.voice, stop, |task| plan::run(args, task))),
+        Command::Plan(args) => (args.voice, watched(args.voice, stop, |task| plan::run(args, traced, task))),
         Command::Point(args) => {
             (args.voice, watched(args.voice, stop, |task| point::run(args, traced, task)))
         }
-        Command::Studio(args) => (args.voice, studio::run(args, done_for, stop)),
+        Command::Studio(args) => (args.voice, studio::run(args, (done_for, looked_for), stop)),
         Command::Home(args) => (args.head.voice, moving::home(args, stop)),
         Command::Jog(args) => (args.head.voice, moving::jog(args, stop)),
         Command::Park(args) => (args.head.voice, moving::park(args, stop)),
         Command::Stop(args) => (args.voice, others::stop(args)),
         Command::Watch(args) => (args.voice, others::run_watch(args, stop)),
-        Command::Calibrate(args) => (args.voice(), calibrate::run(args, stop)),
+        Command::Calibrate(args) => {
+            (args.voice(), watched(args.voice(), stop, |task| calibrate::run(args, task)))
+        }
         Command::Lab(args) => (args.voice(), lab::run(args, answer_to, stop)),
         Command::Doctor(args) => (args.voice, doctor::run(args, stop)),
         Command::Rig(args) => (args.voice(), rig::run(args, stop)),
@@ -164,17 +166,30 @@ fn done_for(arguments: &[String], seat: Option<&dyn Seat>, task: Task<'_>) -> Re
     // what is said first is what is wrong; the rest is for a terminal
     match read(arguments).map_err(|e| failing::refused(&e))? {
         Command::Trace(args) => trace::run(&args, seat, task),
-        Command::Plan(args) => plan::run(&args, task),
+        Command::Plan(args) => plan::run(&args, traced, task),
         Command::Resume(args) => resume::run(&args, traced, seat, task),
         Command::Home(args) => moving::home(&args, task.stop),
         Command::Jog(args) => moving::jog(&args, task.stop),
         Command::Park(args) => moving::park(&args, task.stop),
         Command::Lab(args) => lab::run(&args, answer_to, task.stop),
+        Command::Calibrate(args) => calibrate::run(&args, task),
         Command::Runs(args) => runs::run(&args),
         Command::Compare(args) => runs::run_compare(&args),
         Command::Rigs(args) => rigs::run(&args),
         Command::Explain(args) => explain::run(&args),
         _ => Err(Failure::usage("usage", "the studio does not do this command")),
+    }
+}
+
+/// Looks through a camera for somebody who shows its images, until he wants no more.
+fn looked_for(
+    arguments: &[String],
+    stop: &Stop,
+    each: &mut dyn FnMut(Vec<u8>, serde_json::Value) -> bool,
+) -> Result<(), Failure> {
+    match read(arguments).map_err(|e| failing::refused(&e))? {
+        Command::Calibrate(args) => calibrate::watch(&args, stop, each),
+        _ => Err(Failure::usage("usage", "this command looks through no camera")),
     }
 }
 

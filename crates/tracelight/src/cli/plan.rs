@@ -2,7 +2,10 @@ use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use tracelight_files as files;
-use tracelight_pipeline::{Driving, OrderBy, OrderRequest, SheetFigures, Standing, place, schedule, sketch};
+use tracelight_job::Prepared;
+use tracelight_pipeline::{
+    Driving, OrderBy, OrderRequest, Placed, Schedule, SheetFigures, Sketch, Standing, place, schedule, sketch,
+};
 use tracelight_report::{
     BoardAxis, ColourBy, HeadGcode, drawing, head_gcode, plan_csv, plan_json, plan_words, preview,
 };
@@ -14,7 +17,10 @@ use tracelight_trajectory::{LitSpeed, Plan};
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::{DrivingArgs, stand_by};
 use crate::cli::ending::ends_in;
+use crate::cli::eyes::EyeArgs;
 use crate::cli::gcode::PowerArgs;
+use crate::cli::request::TraceArgs;
+use crate::job;
 use crate::named;
 use tracelight_flags::LetteringArgs;
 use tracelight_flags::PlacementArgs;
@@ -25,10 +31,11 @@ use tracelight_flags::WallArgs;
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]
-#[command(after_help = "Example: tracelight plan examples/star.png -o star.csv --order-by time")]
+#[command(after_help = "Example: tracelight plan examples/star.png -o star.csv --order-by time\n\
+                  What a camera sees, before any of it is drawn: tracelight plan --camera sim:examples/house.png")]
 pub(crate) struct PlanArgs {
     /// A drawing (SVG, DXF, JSON, CSV) or a picture; - is standard input
-    #[arg(required_unless_present = "text", conflicts_with = "text")]
+    #[arg(required_unless_present_any = ["camera", "text"], conflicts_with_all = ["camera", "text"])]
     drawing: Option<String>,
     /// Write the plan: .csv, one row per millisecond; or .gcode (.gc, .nc, .ngc) for a head on a GRBL board, with --axes
     #[arg(help_heading = "Output", short, long, value_name = "FILE.csv|FILE.gcode", value_parser = table)]
@@ -68,6 +75,18 @@ pub(crate) struct PlanArgs {
     /// Where the head stands, as `calibrate corners` or `calibrate head` has found it
     #[arg(help_heading = "Size and place", long, value_name = "FILE.toml", conflicts_with = "distance")]
     head: Option<String>,
+    #[command(flatten, next_help_heading = "Camera")]
+    eye: EyeArgs,
+    /// Random seed for the simulated room
+    #[arg(
+        help_heading = "Simulation",
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        allow_hyphen_values = true,
+        requires = "camera"
+    )]
+    seed: u64,
     #[command(flatten, next_help_heading = "Output")]
     pub(crate) voice: Voice,
 }
@@ -176,8 +195,23 @@ fn picture(text: &str) -> Result<String, String> {
     ends_in(text, "svg", "a preview is an SVG: end it in .svg")
 }
 
-pub(crate) fn run(args: &PlanArgs, task: Task<'_>) -> Result<Answer, Failure> {
+/// Plans the drawing, or what a camera sees: as a command line of `trace`, which the function reads, would.
+pub(crate) fn run(
+    args: &PlanArgs,
+    traced: impl Fn(&[String]) -> Result<TraceArgs, Failure>,
+    task: Task<'_>,
+) -> Result<Answer, Failure> {
     check_out(args)?;
+    if let Some(camera) = &args.eye.camera {
+        let asked = seen(args, traced(&["trace".to_owned(), format!("--camera={camera}")])?)?;
+        let Prepared { sketch, placed, driving, schedule, vision_ms, plan_ms, .. } = job::seen(&asked, task)?;
+        schedule
+            .notes
+            .iter()
+            .chain(&driving.remarks(&schedule.plan))
+            .for_each(|n| task.say(&format!("note: {n}")));
+        return answered(args, &Planned { sketch, placed, driving, schedule, vision_ms, plan_ms }, task);
+    }
     let mut driving = args.driving.resolve()?;
     let known = args.head.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
     known.iter().for_each(|known| stand_by(&mut driving, known));
@@ -205,8 +239,39 @@ pub(crate) fn run(args: &PlanArgs, task: Task<'_>) -> Result<Answer, Failure> {
         .chain(&schedule.notes)
         .chain(&driving.remarks(&schedule.plan))
         .for_each(|n| task.say(&format!("note: {n}")));
+    answered(args, &Planned { sketch, placed, driving, schedule, vision_ms, plan_ms }, task)
+}
+
+/// What was planned.
+struct Planned {
+    sketch: Sketch,
+    placed: Placed,
+    driving: Driving,
+    schedule: Schedule,
+    vision_ms: f64,
+    plan_ms: f64,
+}
+
+/// The flags as those of `trace`, which has what a camera sees drawn.
+fn seen(args: &PlanArgs, mut asked: TraceArgs) -> Result<TraceArgs, Failure> {
+    if args.order_by != OrderByName::default() || args.order_effort != OrderEffortName::default() {
+        let message = "--order-by and --order-effort are for drawings: leave them or --camera out";
+        return Err(Failure::usage("usage", message));
+    }
+    asked.eye.clone_from(&args.eye);
+    (asked.tracing, asked.reading) = (args.tracing.clone(), args.reading.clone());
+    (asked.placement, asked.wall) = (args.placement.clone(), args.wall.clone());
+    (asked.driving, asked.head) = (args.driving.clone(), args.head.clone());
+    (asked.sequence, asked.seed) = (args.sequence.clone(), args.seed);
+    asked.check_camera()?;
+    Ok(asked)
+}
+
+/// Writes what is asked for of a plan, and answers.
+fn answered(args: &PlanArgs, planned: &Planned, task: Task<'_>) -> Result<Answer, Failure> {
+    let Planned { sketch, placed, driving, schedule, vision_ms, plan_ms } = planned;
     if let Some(path) = &args.out {
-        let (bytes, note) = file(args, path, &schedule.plan, &driving)?;
+        let (bytes, note) = file(args, path, &schedule.plan, driving)?;
         files::write(path, bytes)?;
         note.iter().for_each(|note| task.say(&format!("note: {note}")));
     }
@@ -215,11 +280,11 @@ pub(crate) fn run(args: &PlanArgs, task: Task<'_>) -> Result<Answer, Failure> {
     }
     let timing = serde_json::json!({ "vision": vision_ms, "plan": plan_ms });
     let shortest = args.order_by == OrderByName::Distance || driving.request.lit_speed == LitSpeed::Stops;
-    let standing = Standing::of(&placed.drawing, &driving);
-    let text = format!("{}\nhead: {}", plan_words(&schedule, shortest), standing.words());
+    let standing = Standing::of(&placed.drawing, driving);
+    let text = format!("{}\nhead: {}", plan_words(schedule, shortest), standing.words());
     Ok(Answer::new(
         text,
-        plan_json((&placed, SheetFigures::of(&sketch, &placed).as_ref()), &standing, &schedule, &timing),
+        plan_json((placed, SheetFigures::of(sketch, placed).as_ref()), &standing, schedule, &timing),
     ))
 }
 

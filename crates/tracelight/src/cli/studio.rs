@@ -5,14 +5,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::{Value, json};
+use tracelight_camera::{Source, named_devices, shown};
 use tracelight_files as files;
 use tracelight_operator::{self as operator, Bar};
 use tracelight_port::examine;
 use tracelight_sim::RigConfig;
-use tracelight_studio::{Head, Invitation, Performed, Program, Seat, open};
+use tracelight_studio::{Camera, Head, Invitation, Performed, Program, Seat, open};
 use tracelight_task::{Failure, Progress, Stop, Task};
 
-use crate::cli::answer::{Answer, PerformsWith, Voice};
+use crate::cli::answer::{Answer, LooksFor, PerformsWith, Voice};
 use crate::cli::trace;
 use crate::named;
 use tracelight_flags::each;
@@ -35,6 +36,9 @@ pub(crate) struct StudioArgs {
     /// simulates that head [default: the preset report, simulated]
     #[arg(long, value_name = "RIG.toml|PRESET|PORT")]
     rig: Option<String>,
+    /// Camera that Cameras shows beside those that are plugged in, as of trace: http://… of one on the net, a film, a folder of images
+    #[arg(long, value_name = "SOURCE")]
+    camera: Option<String>,
     /// Let devices of the network in that are invited, such as a phone, by https at the next port; a code for the first one's camera is printed
     #[arg(long)]
     lan: bool,
@@ -67,7 +71,10 @@ impl operator::Seat for Attended<'_> {
 /// The commands that the page has done.
 struct Commands {
     performs: PerformsWith,
+    looks: LooksFor,
     head: Option<Head>,
+    /// The camera that was named, by the value of `--camera`.
+    camera: Option<String>,
 }
 
 impl Program for Commands {
@@ -77,6 +84,28 @@ impl Program for Commands {
 
     fn head(&self) -> Option<&Head> {
         self.head.as_ref()
+    }
+
+    fn cameras(&self) -> Vec<Camera> {
+        let named = self.camera.iter().map(|source| Camera {
+            id: "named".to_owned(),
+            name: shown(source),
+            source: source.clone(),
+        });
+        let plugged = named_devices().into_iter().filter_map(|(path, name)| {
+            let id = path.file_name()?.to_str()?.to_owned();
+            Some(Camera { id, name, source: path.to_str()?.to_owned() })
+        });
+        plugged.chain(named).collect()
+    }
+
+    fn look(
+        &self,
+        arguments: &[String],
+        stop: &Stop,
+        each: &mut dyn FnMut(Vec<u8>, Value) -> bool,
+    ) -> Result<(), Failure> {
+        (self.looks)(arguments, stop, each)
     }
 
     fn knows(&self, wish: &str) -> bool {
@@ -96,11 +125,17 @@ impl Program for Commands {
     }
 }
 
-pub(crate) fn run(args: &StudioArgs, performs: PerformsWith, stop: &Stop) -> Result<Answer, Failure> {
+pub(crate) fn run(
+    args: &StudioArgs,
+    (performs, looks): (PerformsWith, LooksFor),
+    stop: &Stop,
+) -> Result<Answer, Failure> {
     let bar = Bar::new(args.voice.quiet);
     let folder = folder(args.folder.as_deref())?;
     let head = args.rig.as_deref().map(|name| head(name, &bar, stop)).transpose()?;
-    let studio = open(args.port, args.lan, &folder, Box::new(Commands { performs, head }))?;
+    let camera = args.camera.as_deref().map(camera).transpose()?;
+    let commands = Commands { performs, looks, head, camera };
+    let studio = open(args.port, args.lan, &folder, Box::new(commands))?;
     let mut address = studio.address();
     if let Some(path) = &args.picture {
         let id = studio.add(path, &files::read(path)?)?;
@@ -137,6 +172,25 @@ fn head(name: &str, bar: &Bar, stop: &Stop) -> Result<Head, Failure> {
         }
     });
     Ok(Head { draws_as, planned_as, is_at_port: at.is_some(), is_real })
+}
+
+/// The camera that is named, from the root: it is asked for from other folders.
+///
+/// # Errors
+/// `usage` of what is none; of a simulated one, which is there anyway.
+fn camera(name: &str) -> Result<String, Failure> {
+    match Source::of(name)? {
+        Source::Simulated(_) => {
+            let message =
+                format!("--camera {name}: the simulated room is in the studio anyway; name a real camera");
+            Err(Failure::usage("usage", message))
+        }
+        Source::Film(path) | Source::Files(path) => {
+            let path = std::path::absolute(path).unwrap_or_else(|_| path.into());
+            Ok(path.to_string_lossy().into_owned())
+        }
+        Source::Net(_) | Source::Device(_) => Ok(name.to_owned()),
+    }
 }
 
 /// Says how a phone joins.

@@ -39,6 +39,8 @@ const LINES: &[&str] = &[
     "calibrate markers --camera sim -o @/camera.toml",
     "calibrate corners --size 2.4m,1.2m --simulate -o @/corners.toml",
     "calibrate head --camera sim -o @/head.toml",
+    "calibrate look --camera sim -o @/wall.jpg",
+    "calibrate show @/camera.toml @/corners.toml",
     "calibrate ruler examples/ruler-upright.png examples/ruler-level.png --marks 4in --wish 3ft,3ft",
     "lab amplifier --out @/amplifier",
     "lab backlash --rig worn --axis pan --out @/backlash",

@@ -22,7 +22,7 @@ fn what_is_described_is_there_and_what_is_there_is_described() {
     assert!(routes.len() > 20, "{routes:?}");
     for (path, how) in &routes {
         let methods = paths.get(&format!("/{path}")).unwrap_or_else(|| panic!("/{path} is not described"));
-        for method in ["get", "post", "delete"] {
+        for method in ["get", "post", "put", "delete"] {
             let is = how.contains(&format!("{method}("));
             assert_eq!(methods.get(method).is_some(), is, "{method} /{path}");
         }

@@ -7,12 +7,11 @@ use tracelight_eye::room::{Furnished, RoomRequest};
 use tracelight_eye::told::{json, text};
 use tracelight_eye::wall::{see_wall, well_exposed};
 use tracelight_files as files;
-use tracelight_operator::Bar;
 use tracelight_rig::PanTilt;
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::head::{HeadFile, HeadScore, KnownHead, NewHead};
 use tracelight_session::Session;
-use tracelight_task::{Failure, Stop, Task};
+use tracelight_task::{Failure, Task};
 
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::DrivingArgs;
@@ -51,9 +50,8 @@ pub(super) struct HeadArgs {
     pub(super) voice: Voice,
 }
 
-pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let bar = Bar::new(args.voice.quiet);
-    let task = Task { progress: &bar, stop };
+pub(super) fn run(args: &HeadArgs, task: Task<'_>) -> Result<Answer, Failure> {
+    let stop = task.stop;
     let mut driving = args.driving.resolve()?;
     let Source::Simulated(picture) = args.eye.source()? else {
         let message = "no head can be driven yet but simulated ones, and they draw in simulated rooms: give --camera sim or sim:PICTURE";

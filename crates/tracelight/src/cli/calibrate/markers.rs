@@ -1,28 +1,25 @@
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_aim::{Board, HeadPose, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
-use tracelight_camera::{Opened, Source};
+use tracelight_aim::{Board, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
+use tracelight_camera::Source;
 use tracelight_eye::board::BAR_M;
 use tracelight_eye::grey;
-use tracelight_eye::room::{Furnished, RoomRequest};
 use tracelight_eye::wall::{doubts, markers, well_exposed};
 use tracelight_files as files;
 use tracelight_image::Grey;
 use tracelight_maths::atan;
 use tracelight_picture as picture;
-use tracelight_pipeline::{DEFAULT_DISTANCE_M, Placing};
+use tracelight_pipeline::Placing;
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::PageName;
 use tracelight_rigfile::camera::{CameraFile, Wall};
-use tracelight_session::Session;
-use tracelight_sim::RigConfig;
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::Length;
 
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::ending::toml;
-use crate::cli::eyes::{ImageSize, SimulatedEyeName};
+use crate::cli::eyes::{ImageSize, SimulatedEyeName, SimulatedWall, looking};
 use crate::named;
 use tracelight_flags::positive_length;
 
@@ -271,19 +268,9 @@ fn found(path: &str) -> Result<View, Failure> {
 fn taken(args: &MarkersArgs, name: &str, known: Option<&LensBelief>, stop: &Stop) -> Result<View, Failure> {
     let source = Source::of(name)?;
     let size = args.camera_size.map(|size| size.0).or_else(|| known.map(|known| known.lens.size_px));
-    let pixels = match source.open(size)? {
-        Opened::Camera(mut camera) => well_exposed(&mut *camera, stop)?,
-        Opened::Simulated(picture) => {
-            let (rig, pose) = (RigConfig::report(), HeadPose::square_on(DEFAULT_DISTANCE_M));
-            let placing = Placing::default();
-            let (eye, seed) = (args.sim_camera.eye(), args.seed);
-            let picture = picture.map(named::painted).transpose()?;
-            let request =
-                RoomRequest { picture: picture.as_ref(), placing: &placing, eye, pages: true, seed };
-            let room = Furnished::new(&request, &rig, pose)?.watched(&rig, pose);
-            well_exposed(&mut Session::new(room), stop)?
-        }
-    };
+    let wall =
+        SimulatedWall { eye: args.sim_camera, placing: Placing::default(), pages: true, seed: args.seed };
+    let pixels = well_exposed(&mut *looking(source.open(size)?, &wall)?, stop)?;
     Ok(View::of(name, &grey(&pixels)?))
 }
 
