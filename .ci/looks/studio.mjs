@@ -184,6 +184,22 @@ const ended = async page => {
 // Somebody attends a job: arms by holding, traces, pauses, stops from a field, ends; nothing else lights it.
 const attend = async () => {
   const page = await opened(1280, 900)
+  // a program that speaks Foxglove's protocol reads what happens
+  await page.evaluate(() => {
+    const told = (globalThis.foxglove = { lines: 0 })
+    const socket = new WebSocket(`ws://${location.host}/api/v1/foxglove`, ['foxglove.sdk.v1', 'foxglove.websocket.v1'])
+    socket.binaryType = 'arraybuffer'
+    const topics = new Map()
+    socket.onmessage = ({ data }) => {
+      if (typeof data === 'string') {
+        for (const { id, topic } of JSON.parse(data).channels ?? []) topics.set(topics.size, topic), socket.send(JSON.stringify({ op: 'subscribe', subscriptions: [{ id: topics.size - 1, channelId: id }] }))
+        return
+      }
+      const topic = topics.get(new DataView(data).getUint32(1, true)), what = JSON.parse(new TextDecoder().decode(data.slice(13)))
+      told[topic] = (told[topic] ?? 0) + 1
+      if (topic === '/plan') told.lines = what.entities[0].lines.length
+    }
+  })
   await ready(page)
   check(/✓|⚠/.test(await page.textContent('#checks')), 'nothing was looked at before light')
   await hold(page, 700)
@@ -213,6 +229,8 @@ const attend = async () => {
   await other.click('#stop')
   await until(page, 'another page does not stop it', () => /Stopped/.test(document.getElementById('state').textContent))
   const took = Date.now() - began
+  const read = await page.evaluate(() => globalThis.foxglove)
+  check(read.lines === 28 && read['/progress'] > 20 && read['/asked'] > 20 && read['/log'] > 3, `Foxglove is told ${JSON.stringify(read)}`)
   check(!(await lit(page)), 'what is stopped is lit')
   await hold(page, 1100)
   await page.click('#go')

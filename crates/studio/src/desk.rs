@@ -16,7 +16,7 @@ use crate::folder::Kind;
 use crate::folder::{Folder, no_run};
 use crate::live::Live;
 use crate::names::Names;
-use crate::points;
+use crate::points::{self, Drawn};
 use crate::program::{Head, Performed, Program, Seat};
 use crate::tasks::{AtLast, Ended, Work};
 use crate::watch::{Watching, as_camera, file_stem};
@@ -34,6 +34,10 @@ pub(crate) struct Desk {
     plans: Mutex<VecDeque<(u64, Bytes)>>,
     /// The picture and flags that were planned last by who operates: where a page begins that comes new, such as a phone at the wall.
     last: Mutex<Value>,
+    /// The number of that plan.
+    last_plan: AtomicU64,
+    /// The points of what the job draws, where they are those that were planned last.
+    drawn: Mutex<Option<Drawn>>,
     /// What each page asked for last, and the number it gave that.
     asked: Mutex<HashMap<String, (u64, Arc<Work>)>>,
     /// Held while a plan is made: each takes all of the processor. Who waits for it holds no thread.
@@ -102,6 +106,8 @@ impl Desk {
             next: AtomicU64::new(1),
             plans: Mutex::default(),
             last: Mutex::default(),
+            last_plan: AtomicU64::new(0),
+            drawn: Mutex::default(),
             asked: Mutex::default(),
             planning: Arc::default(),
             waiting: [24, 12, 6].map(|most| Arc::new(Semaphore::new(most))),
@@ -237,8 +243,22 @@ impl Desk {
     }
 
     /// Takes note of what somebody who operates has planned.
-    pub(crate) fn note(&self, picture: &str, flags: &Map<String, Value>) {
+    pub(crate) fn note(&self, picture: &str, flags: &Map<String, Value>, plan: &Value) {
         *locked(&self.last) = json!({ "picture": picture, "flags": flags });
+        self.last_plan.store(plan["id"].as_u64().unwrap_or(0), Ordering::Relaxed);
+    }
+
+    /// The points of what the job in hand draws, if they are known.
+    pub(crate) fn drawn(&self) -> Option<Drawn> {
+        locked(&self.drawn).clone()
+    }
+
+    /// The points of what was planned last, where that is what is to be drawn.
+    fn planned_of(&self, picture: &str, flags: &Value) -> Option<Drawn> {
+        let last = self.last();
+        let asked = |flags: &Value| arguments(flags.as_object()?, Which::Drawing, &self.names()).ok();
+        let is_same = last["picture"] == picture && asked(&last["flags"]) == asked(flags);
+        Drawn::of(self.points(self.last_plan.load(Ordering::Relaxed))?).filter(|_| is_same)
     }
 
     /// What was planned last; null where nothing was.
@@ -330,10 +350,12 @@ impl Desk {
                 work: Arc::clone(&work),
                 run: String::new(),
                 picture: picture.clone(),
-                flags,
+                flags: flags.clone(),
                 live: operator.is_some(),
             });
         }
+        *locked(&self.drawn) =
+            self.planned_of(&picture, &flags).filter(|_| matches!(wanted.subject, Subject::Picture(_)));
         // from here on it ends, whatever becomes of it
         let last = AtLast(Arc::clone(&work));
         let named = as_camera(&picture).map_or_else(|| picture.clone(), file_stem);

@@ -31,6 +31,9 @@ const WHOLE: Duration = Duration::from_secs(600);
 /// What anybody may ask who reaches a door.
 const STOP: &str = "/api/v1/stop";
 const JOIN: &str = "/api/v1/session/join";
+/// What is read by Foxglove, also by its page on the net, which runs in a browser of this computer.
+const FOXGLOVE: &str = "/api/v1/foxglove";
+const FOXGLOVE_PAGE: &str = "https://app.foxglove.dev";
 
 /// The door that a request came in by.
 #[derive(Clone)]
@@ -105,8 +108,11 @@ fn admitted(door: &Door, request: &mut Request) -> Result<(), Refused> {
         Door::Local(_) => origin.strip_prefix("http://").is_some_and(|host| door.is_named(host)),
         Door::Lan(_) => origin.strip_prefix(door.scheme()) == Some(host),
     });
+    // Foxglove's page may read what happens, and says so; it can ask nothing
+    let is_foxglove =
+        is_read && request.uri().path() == FOXGLOVE && text(ORIGIN.as_str()) == Some(FOXGLOVE_PAGE);
     // a socket that is opened is read by GET, and browsers let any page open one
-    if (!is_read || is_socket) && (is_foreign || !is_own) {
+    if (!is_read || is_socket) && (is_foreign || !is_own) && !is_foxglove {
         return Err(forbidden("another page asked for this, and only the studio's own may"));
     }
     let caller = door.caller(headers);

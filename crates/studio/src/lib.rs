@@ -13,6 +13,7 @@ mod devices;
 mod door;
 mod flags;
 mod folder;
+mod foxglove;
 mod guard;
 mod head;
 mod history;

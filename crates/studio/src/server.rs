@@ -24,6 +24,7 @@ use crate::desk::{Subject, Wanted};
 use crate::devices::Caller;
 use crate::door::Place;
 use crate::folder::{EXAMPLES, Kind};
+use crate::foxglove::{MOST_MESSAGE as MOST_READ, PROTOCOLS, serve_foxglove};
 use crate::guard::{Door, SHOWN, guard};
 use crate::head::Move;
 use crate::house::House;
@@ -51,6 +52,7 @@ pub(crate) fn router(house: House, door: Door) -> Router {
         .route("/jobs/current", get(job))
         .route("/jobs/current/wishes", post(wish))
         .route("/live", get(live))
+        .route("/foxglove", get(foxglove))
         .route("/head", post(move_head))
         .route("/lab", post(lab))
         .route("/lab/lessons", get(lessons))
@@ -184,7 +186,7 @@ async fn plan(
         let _turn = turn;
         let made = desk.plan(planned)?;
         if caller.operates() {
-            desk.note(&picture, &flags);
+            desk.note(&picture, &flags, &made);
         }
         Ok(made)
     })
@@ -255,6 +257,19 @@ async fn live(
         // as long as it is open it counts as a connection
         let _place = place;
         serve_socket(desk, (page, caller), socket).await;
+    })
+}
+
+/// What happens, for Foxglove and programs like it.
+async fn foxglove(
+    State(desk): Shared,
+    Extension(caller): Extension<Caller>,
+    place: Option<Extension<Place>>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    upgrade.protocols(PROTOCOLS).max_message_size(MOST_READ).on_upgrade(async move |socket| {
+        let _place = place;
+        serve_foxglove(desk, caller, socket).await;
     })
 }
 

@@ -16,7 +16,7 @@ use crate::devices::Caller;
 /// Longest message of a page, bytes.
 pub(crate) const MOST_MESSAGE: usize = 1024;
 /// How long a page may take to read what it is told.
-const PATIENCE: Duration = Duration::from_secs(5);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(5);
 /// How often is looked whether the operator is there.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -98,7 +98,7 @@ async fn say(socket: &mut WebSocket, text: String) -> Option<()> {
 }
 
 /// Waits until a device is sent away; a page of this computer never is.
-async fn gone(sent_away: &mut Option<watch::Receiver<bool>>) {
+pub(crate) async fn gone(sent_away: &mut Option<watch::Receiver<bool>>) {
     match sent_away {
         // a device that nobody knows any more has left
         Some(sent_away) => drop(sent_away.wait_for(|is| *is).await),
