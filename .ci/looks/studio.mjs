@@ -466,6 +466,25 @@ const lab = async () => {
   await until(page, 'a right answer is not told', () => /Right/.test(document.getElementById('lab-verdict').textContent))
   await page.reload()
   await until(page, 'a lesson that was passed is forgotten', () => /Lesson 1 ✓/.test(document.getElementById('lesson-list').textContent))
+  // a closed pole is dragged along its branch, and damping and step follow
+  await page.goto(address + '#lab=locus')
+  await page.fill('[name=systems]', '3(s+6)^2/(s(s+1)^2)')
+  await until(page, 'no locus is dragged', () => /damping 0.14/.test(document.querySelector('#lab-drag [role=status]').textContent) && /3\(s\+6\)/.test(document.querySelector('#lab-drag pre').textContent))
+  const plane = await page.locator('.locus').boundingBox()
+  // the pair at about -0.8 + 5.6j, towards less gain
+  const [pole, to] = await page.evaluate(() => {
+    const canvas = document.querySelector('.locus'), image = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height)
+    const red = []
+    for (let n = 0; n < image.data.length; n += 4) if (image.data[n] > 150 && image.data[n + 1] < 60 && image.data[n + 2] < 80) red.push([(n / 4) % canvas.width, Math.floor(n / 4 / canvas.width)])
+    const top = red.filter(([, y]) => y < canvas.height / 2 - 30)
+    const middle = [0, 1].map(k => top.reduce((sum, at) => sum + at[k], 0) / top.length)
+    return [middle, [middle[0], (middle[1] + canvas.height / 2) / 2]]
+  })
+  await page.mouse.move(plane.x + pole[0], plane.y + pole[1])
+  await page.mouse.down()
+  await page.mouse.move(plane.x + to[0], plane.y + to[1], { steps: 6 })
+  await page.mouse.up()
+  await until(page, 'a pole that is dragged changes nothing', () => !/damping 0.14/.test(document.querySelector('#lab-drag [role=status]').textContent) && /^k = 0/.test(document.querySelector('#lab-drag [role=status]').textContent))
   // what takes seconds waits until it is asked for; what was tuned is kept as a rig file
   await page.goto(address + '#lab=tune')
   await page.fill('[name=laws]', 'state')
@@ -553,7 +572,7 @@ const looks = async () => {
     for (const theme of ['light', 'dark', 'room']) {
       const page = await opened(width, height)
       await page.evaluate(name => localStorage.setItem('theme', name), theme)
-      for (const view of ['', '#run', '#runs', '#compare=house,house-2', '#lab', '#lab=lesson-2', '#rigs=garage.toml', '#cameras', '#cameras=corners', '#devices']) {
+      for (const view of ['', '#run', '#runs', '#compare=house,house-2', '#lab', '#lab=locus', '#lab=lesson-2', '#rigs=garage.toml', '#cameras', '#cameras=corners', '#devices']) {
         // a page that is new
         await page.goto('about:blank')
         await page.goto(address + view)

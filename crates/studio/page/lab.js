@@ -2,7 +2,7 @@
 /** The lab: experiments of a command line each, with its plot, figures and words; lessons with questions that the simulator grades. */
 
 import * as api from './api.js'
-import { by, element } from './dom.js'
+import { by, element, once } from './dom.js'
 
 /** How long what is typed rests before it is asked, ms. */
 const REST = 200
@@ -35,7 +35,7 @@ const EXPERIMENTS = [
   { command: 'bode', name: 'Bode', words: 'Gain and phase over frequency, with margins.', systems: 'K11*G11', fields: [{ flag: 'closed', label: 'Of the closed loop', check: true }] },
   { command: 'nyquist', name: 'Nyquist', words: 'The open loop around −1, with margins.', systems: 'K11*G11', fields: [] },
   { command: 'nichols', name: 'Nichols', words: 'Gain over phase of the open loop, with contours of the closed one.', systems: 'K11*G11', fields: [] },
-  { command: 'locus', name: 'Root locus', words: 'Where the poles of the closed loop go as the gain rises.', systems: 'K11*G11', fields: [{ flag: 'damping', label: 'Gain for a damping of', hint: '0.7' }] },
+  { command: 'locus', name: 'Root locus', words: 'Where the poles of the closed loop go as the gain k rises. Drag a closed pole along its branch, or the slider: damping and step follow.', systems: 'K11*G11', fields: [{ flag: 'damping', label: 'Gain for a damping of', hint: '0.7' }] },
   { command: 'pzmap', name: 'Poles and zeros', words: 'With natural frequency and damping of each.', systems: 'G11', fields: [{ flag: 'closed', label: 'Of the closed loop', check: true }] },
   { command: 'response', name: 'Response', words: 'Of linear systems, to a step, an impulse or a ramp.', systems: '1/(s^2+0.4s+1)', fields: [{ flag: 'input', label: 'Input', choices: [['', 'step'], ['impulse', 'impulse'], ['ramp', 'ramp']] }, { flag: 'duration', label: 'For', hint: '20s' }, { flag: 'closed', label: 'Of the closed loop', check: true }] },
   {
@@ -95,6 +95,7 @@ export class Lab {
   constructor(problem) {
     this.problem = problem
     this.timer = 0
+    this.locus = once(async () => new (await import('./locus.js')).Locus(by('lab-drag'), problem))
     this.number = 0
     this.before = new AbortController()
     this.address = ''
@@ -118,6 +119,7 @@ export class Lab {
     this.problem(null)
     this.inputs.clear()
     by('lab-form').replaceChildren()
+    by('lab-drag').hidden = true
     by('lab-plot').replaceChildren()
     by('lab-words').textContent = by('lab-command').textContent = ''
     by('lab-text').replaceChildren()
@@ -237,6 +239,7 @@ export class Lab {
       if (number !== this.number) return null
       this.problem(null)
       this.#plot(told)
+      await this.#dragged(asked, told)
       by('lab-words').textContent = told.words
       by('lab-command').textContent = told.command
       return told
@@ -247,6 +250,13 @@ export class Lab {
       }
       return null
     }
+  }
+
+  /** Lets the poles of a root locus be dragged; of the first of several. @param {{ command: string, of: string[] }} asked @param {api.Experiment} told */
+  async #dragged(asked, told) {
+    const [found] = asked.command === 'locus' ? told.answer.systems : []
+    by('lab-drag').hidden = !found
+    if (found) (await this.locus()).show(found, asked.of[0])
   }
 
   /** @param {api.Experiment} told */

@@ -28,7 +28,7 @@ macro_rules! script {
 }
 
 /// The page first.
-pub(crate) static ASSETS: [Asset; 42] = [
+pub(crate) static ASSETS: [Asset; 43] = [
     asset!("index.html", "text/html; charset=utf-8"),
     asset!("style.css", "text/css; charset=utf-8"),
     asset!("views.html", "text/html; charset=utf-8"),
@@ -61,6 +61,7 @@ pub(crate) static ASSETS: [Asset; 42] = [
     script!("calibrations.js"),
     script!("head-corners.js"),
     script!("lab.js"),
+    script!("locus.js"),
     script!("pictures.js"),
     script!("beneath.js"),
     script!("corners.js"),

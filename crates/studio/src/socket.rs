@@ -189,7 +189,14 @@ mod tests {
             state ^= state << 17;
             usize::try_from(state >> 33).unwrap() % below
         };
-        for _ in 0..100_000 {
+        // for longer where somebody asks for that
+        let longer_s =
+            std::env::var("TRACELIGHT_FUZZ_S").ok().and_then(|text| text.parse().ok()).unwrap_or(0);
+        let began = std::time::Instant::now();
+        for count in 0_u64.. {
+            if count >= 100_000 && began.elapsed().as_secs() >= longer_s {
+                break;
+            }
             let mut bytes = seeds[random(seeds.len())].to_vec();
             for _ in 0..random(4) {
                 let at = random(bytes.len());
