@@ -1,6 +1,6 @@
 //! A lap that no camera follows. Somebody at the wall may pause, stop, hurry or slow it, and let it go on.
 
-use tracelight_session::{Event, Refused, Request, Snapshot};
+use tracelight_session::{Event, Job, Refused, Request, Snapshot};
 use tracelight_sim::{Observed, Run, Tick, job_of};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
@@ -25,13 +25,20 @@ pub(crate) struct RanLap {
 pub(crate) fn run_lap(
     rig: &mut dyn Observed,
     (plan, frame): (&Plan, Option<&Looped>),
-    dry: bool,
+    (dry, slowest): (bool, f32),
     (keep, hands): (&mut dyn Keep, &mut dyn Hands),
     task: Task<'_>,
 ) -> Result<RanLap, Failure> {
-    let mut lap =
-        Lap { plan, dry, task, run: Run::default(), memory: Memory::default(), diary: Diary::default() };
-    let ended = drive_framed(rig, (job_of(plan, dry), &mut lap), frame, (keep, hands), task)?;
+    let mut lap = Lap {
+        plan,
+        dry,
+        slowest,
+        task,
+        run: Run::default(),
+        memory: Memory::default(),
+        diary: Diary::default(),
+    };
+    let ended = drive_framed(rig, (lap.job(), &mut lap), frame, (keep, hands), task)?;
     lap.diary.end(&ended.now);
     Ok(RanLap {
         run: lap.run,
@@ -43,10 +50,18 @@ pub(crate) fn run_lap(
 struct Lap<'a> {
     plan: &'a Plan,
     dry: bool,
+    /// Lowest speed that it may be slowed to.
+    slowest: f32,
     task: Task<'a>,
     run: Run,
     memory: Memory,
     diary: Diary,
+}
+
+impl Lap<'_> {
+    fn job(&self) -> Job {
+        Job { slowest: self.slowest, ..job_of(self.plan, self.dry) }
+    }
 }
 
 impl Course for Lap<'_> {
@@ -67,9 +82,7 @@ impl Course for Lap<'_> {
 
     fn ask(&mut self, ask: Ask, wall: &mut Wall<'_>, _: &mut dyn Hands, _: Task<'_>) -> Result<(), Refused> {
         match ask {
-            Ask::Request(Request::Resume) if wall.awaits_job() => {
-                wall.request(Request::Next(job_of(self.plan, self.dry)))
-            }
+            Ask::Request(Request::Resume) if wall.awaits_job() => wall.request(Request::Next(self.job())),
             Ask::Request(request) => wall.request(request),
             // strokes come one after the other by themselves
             Ask::Step(_) => Ok(()),
@@ -136,7 +149,7 @@ mod tests {
                 let task = Task { progress: &NoProgress, stop: &stop };
                 let mut rig = SimulatedRig::new(&config, POSE, seed as u64);
                 let mut keep = Until { tick, stop: stopped.then_some(&stop), gates: Vec::new() };
-                let lap = run_lap(&mut rig, (&plan, None), false, (&mut keep, &mut Nobody), task);
+                let lap = run_lap(&mut rig, (&plan, None), (false, 0.0), (&mut keep, &mut Nobody), task);
                 assert!(keep.gates[tick as usize], "{tick}: nothing to see");
                 assert!(keep.gates[tick as usize + 1..].iter().all(|gate| !gate), "{tick}: open after it");
                 match lap {
@@ -169,7 +182,7 @@ mod tests {
         // its first edges tell of a disc that stands still
         rig.suffer(Trouble::EncoderCut(Joint::Pan));
         let mut keep = Jumps(0);
-        let lap = run_lap(&mut rig, (&plan, None), false, (&mut keep, &mut Nobody), task).unwrap();
+        let lap = run_lap(&mut rig, (&plan, None), (false, 0.0), (&mut keep, &mut Nobody), task).unwrap();
         let (run, why) = (lap.run, lap.failure);
         assert!(
             why.is_some_and(|why| why.code != "unhomed")

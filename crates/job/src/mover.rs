@@ -429,7 +429,7 @@ mod tests {
         let task = Task { progress: &NoProgress, stop: &stop };
         for dry in [true, false] {
             let drawn = (&plan, None);
-            let lap = run_lap(&mut rig, drawn, dry, (&mut KeepNothing, &mut Nobody), task).unwrap();
+            let lap = run_lap(&mut rig, drawn, (dry, 0.0), (&mut KeepNothing, &mut Nobody), task).unwrap();
             assert!(lap.failure.is_none() && lap.run.is_done(), "dry {dry}: {:?}", lap.failure);
             let lit: Vec<&Tick> = lap.run.ticks.iter().filter(|tick| tick.light).collect();
             assert_eq!(lit.is_empty(), dry);

@@ -9,7 +9,7 @@ use tracelight_pipeline::{
     schedule_rest, schedule_whole, sketch,
 };
 use tracelight_rig::{Joint, PanTilt};
-use tracelight_sim::{LightFrom, Observed as _, Origin, RigConfig, Run, SimulatedRig};
+use tracelight_sim::{LightFrom, Observed as _, Origin, RigConfig, Run, SimulatedRig, slowest_speed};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::Plan;
@@ -388,7 +388,10 @@ impl Prepared {
         let mut simulated = None;
         let rig = head.or(&mut simulated, || self.put_up(believed));
         let origin = rig.origin();
-        let mut done = run_lap(rig, drawn, dry, (keep, hands), task)?;
+        // nobody slows it who is not there
+        let may_slow = hands.is_there() && !dry;
+        let slowest = if may_slow { slowest_speed(believed, &self.schedule.plan) } else { 0.0 };
+        let mut done = run_lap(rig, drawn, (dry, slowest), (keep, hands), task)?;
         let lost = simulated.map(|rig| rig.lost_steps());
         done.notes.extend(lost.and_then(|lost| lost_note(believed, self.driving.pose.distance_m, lost)));
         Ok((done, origin))

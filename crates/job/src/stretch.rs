@@ -6,7 +6,7 @@ use tracelight_eye::refused;
 use tracelight_eye::trim::Trimmer;
 use tracelight_rig::{Darkness, Phase};
 use tracelight_session::{Job, Request, State};
-use tracelight_sim::{AFTERMATH_TICKS, Simulated as _, job_of};
+use tracelight_sim::{AFTERMATH_TICKS, Simulated as _, job_of, slowest_speed};
 use tracelight_task::Failure;
 use tracelight_trajectory::Plan;
 
@@ -20,7 +20,9 @@ impl Watched<'_> {
             State::Ready | State::Done => {
                 self.trimmer = Some(Trimmer::default());
                 let of = self.job.drawing.strokes.len() as u32;
-                let job = Job { first: self.first, of, ..job_of(plan, dry) };
+                let may_slow = self.hands.is_there() && !dry;
+                let slowest = if may_slow { slowest_speed(&self.driving.rig, plan) } else { 0.0 };
+                let job = Job { first: self.first, of, slowest, ..job_of(plan, dry) };
                 if self.goes_on { Request::Next(job) } else { Request::Trace(job) }
             }
             State::Paused | State::Stopped => Request::Resume,

@@ -272,7 +272,7 @@ fn whole_strokes<'a>(drawing: &Drawing, plan: &'a Plan) -> impl Iterator<Item = 
 #[cfg(test)]
 mod tests {
     use tracelight_aim::HeadPose;
-    use tracelight_sim::first_standing;
+    use tracelight_sim::{first_standing, slowest_speed};
     use tracelight_stroke::{Affine, Element, Path, Point};
 
     use super::*;
@@ -344,6 +344,17 @@ mod tests {
         let dark_s: f64 =
             notes[0].split("dark for ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
         assert!(plan.duration_s() - plan.lit_s() > dark_s - 0.1);
+    }
+
+    #[test]
+    fn what_was_spread_is_not_slowed_so_far_that_its_light_stands() {
+        let driving = driving();
+        let Schedule { plan, .. } = planned(vec![scribble(60)], &driving).unwrap();
+        let slowest = slowest_speed(&driving.rig, &plan);
+        assert!((0.5..=1.0).contains(&slowest), "{slowest}");
+        // a line is drawn at any speed
+        let Schedule { plan, .. } = planned(vec![far(0)], &driving).unwrap();
+        assert_eq!(slowest_speed(&driving.rig, &plan), 0.0);
     }
 
     #[test]

@@ -24,6 +24,8 @@ pub struct Job {
     pub of: u32,
     /// Whether it is traced in the dark.
     pub dry: bool,
+    /// Lowest speed at which its light stands nowhere for too long; 0 where any is fast enough.
+    pub slowest: f32,
     /// What it does at its end instead of ending.
     pub again: Option<Again>,
 }

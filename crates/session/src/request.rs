@@ -108,6 +108,14 @@ pub enum Refused {
         /// What was asked.
         asked: f32,
     },
+    /// At this speed the light of the job would stand for too long somewhere.
+    #[error("at {:.0} % the light would stand in one place for too long: this drawing is traced at {:.0} % at least", 100.0 * .asked, 100.0 * .least)]
+    Slow {
+        /// What was asked.
+        asked: f32,
+        /// The lowest speed.
+        least: f32,
+    },
     /// The rig takes no commands at present.
     #[error("the rig has not taken earlier commands yet: wait, or stop")]
     Busy,

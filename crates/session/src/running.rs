@@ -13,6 +13,8 @@ pub(crate) struct Running {
     pub(crate) of: u32,
     pub(crate) dry: bool,
     pub(crate) again: Option<Again>,
+    /// Lowest speed that it may be slowed to.
+    pub(crate) slowest: f32,
     /// How often it was done.
     pub(crate) laps: u32,
     /// When it was done last, until it is begun again.
@@ -25,7 +27,7 @@ pub(crate) struct Running {
 
 impl Running {
     pub(crate) fn of(job: Job) -> Self {
-        let (ticks, Job { segments, strokes, first, of, dry, again }) = (job.ticks(), job);
+        let (ticks, Job { segments, strokes, first, of, dry, slowest, again }) = (job.ticks(), job);
         Self {
             feeder: Feeder::new(segments, dry),
             strokes,
@@ -34,6 +36,7 @@ impl Running {
             of,
             dry,
             again,
+            slowest,
             laps: 0,
             ended: None,
             plan_tick: 0,

@@ -305,6 +305,10 @@ impl<R: Rig> Session<R> {
         if !(SPEED_RANGE.0..=SPEED_RANGE.1).contains(&rate) {
             return Err(Refused::Speed { asked: rate });
         }
+        let least = self.running.as_ref().map_or(0.0, |running| running.slowest);
+        if rate < least {
+            return Err(Refused::Slow { asked: rate, least });
+        }
         self.speed = rate;
         if self.state != State::Lost {
             self.send(Command::Speed(rate));
@@ -373,7 +377,12 @@ impl<R: Rig> Session<R> {
     /// Begins a job where the head rests.
     pub(crate) fn start(&mut self, job: Job) -> Result<(), Refused> {
         self.check_start(&job)?;
+        let slowest = job.slowest.min(1.0);
         self.running = Some(Running::of(job));
+        // slowed before anybody knew what is drawn
+        if self.speed < slowest {
+            self.set_speed(slowest)?;
+        }
         self.go_on();
         Ok(())
     }

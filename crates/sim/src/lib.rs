@@ -63,7 +63,7 @@ pub use run::{
 pub use safety_settings::SafetySettings;
 pub use score::{Tracking, score};
 pub use spread::Spread;
-pub use standing::{LightAhead, Standing, first_standing};
+pub use standing::{LightAhead, Standing, first_standing, slowest_speed};
 pub use step::{
     Push, StepResponse, follow_array, push_response, step_response, step_response_by, step_response_by_pid,
 };

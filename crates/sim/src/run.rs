@@ -399,7 +399,7 @@ pub fn job_of(plan: &Plan, dry: bool) -> Job {
     };
     let strokes: Vec<StrokeTicks> = plan.lit_ticks().into_iter().map(ticks).collect();
     let of = strokes.len() as u32;
-    Job { segments: plan.segments.clone(), strokes, first: 0, of, dry, again: None }
+    Job { segments: plan.segments.clone(), strokes, first: 0, of, dry, slowest: 0.0, again: None }
 }
 
 /// Arms a rig: the host is there, and has read every fault that the rig told of. False where the rig does not take it.

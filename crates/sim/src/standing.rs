@@ -2,7 +2,7 @@
 
 use tracelight_control::{Config, LightBudget};
 use tracelight_maths::{cos, hypot};
-use tracelight_rig::{PanTilt, Segment, TICK_F64_S};
+use tracelight_rig::{PanTilt, SPEED_RANGE, Segment, TICK_F64_S};
 use tracelight_session::ATTENDED_TICKS;
 use tracelight_stroke::Point;
 use tracelight_trajectory::{Plan, PlanPoint};
@@ -11,6 +11,8 @@ use crate::config::RigConfig;
 
 /// Share of the budget that a plan may use: a head that follows it comes back to where it was pushed off, and starts slowly there.
 const PLANNED_SHARE: f64 = 0.9;
+/// Share of the budget that a plan may use that somebody slows: at its own speed it uses less.
+const SLOWED_SHARE: f64 = 0.95;
 /// What is told of as one place: the diagonal of the budget's squares, in radii, as far as light may be from some of it that is charged with it.
 const ABOUT_RADII: f64 = 5.8;
 
@@ -48,6 +50,29 @@ pub fn first_standing(rig: &RigConfig, plan: &Plan) -> Option<Standing> {
         about_rad,
         most_s,
     })
+}
+
+/// The lowest speed of a plan's clock, as a share of the plan's own, at which its light stands nowhere: slower it is longer in each place. 0 where every speed that may
+/// be asked is fast enough.
+pub fn slowest_speed(rig: &RigConfig, plan: &Plan) -> f32 {
+    /// By which it is found.
+    const STEP: f32 = 0.05;
+    let standing_ticks = (SLOWED_SHARE * rig.light.standing_s / TICK_F64_S) as u32;
+    let config = Config { standing_ticks, ..rig.control_config() };
+    let stands = |speed: f32| Watch::new(&config).pass(slowed(&plan.segments, speed)).is_some();
+    if !stands(SPEED_RANGE.0) {
+        return 0.0;
+    }
+    let (mut least, mut most) = ((SPEED_RANGE.0 / STEP) as u32, (1.0 / STEP) as u32);
+    while most - least > 1 {
+        let middle = u32::midpoint(least, most);
+        if stands(STEP * middle as f32) {
+            least = middle;
+        } else {
+            most = middle;
+        }
+    }
+    STEP * most as f32
 }
 
 /// How long it must be dark between a way that is gone again and again, ticks, so that its light stands nowhere; `None` where no wait of up to
@@ -160,6 +185,22 @@ fn moments(segments: &[Segment]) -> impl Iterator<Item = Moment> {
         }
     };
     segments.iter().flat_map(move |segment| (0..segment.ticks).map(move |n| of(segment, n)))
+}
+
+/// The ticks of segments whose plan's clock goes slower.
+fn slowed(segments: &[Segment], speed: f32) -> impl Iterator<Item = Moment> {
+    let of = move |segment: &Segment, n: u32| {
+        let at = segment.sample((n as f32 * speed).min(f32::from(segment.ticks)));
+        Moment {
+            angle_rad: at.map(|setpoint| setpoint.position_rad),
+            rate_rad_s: at.map(|setpoint| speed * setpoint.velocity_rad_s),
+            gate: segment.gate,
+        }
+    };
+    segments.iter().flat_map(move |segment| {
+        let ticks = (f32::from(segment.ticks) / speed).ceil() as u32;
+        (0..ticks).map(move |n| of(segment, n))
+    })
 }
 
 /// A light budget, looked after along segments.
