@@ -107,11 +107,11 @@ pub fn text(found: &CorneredHead, truth: Option<&Truth>) -> String {
     );
     if let Some(Truth { pose, rms_m, most_m }) = truth {
         text += &format!(
-            "\ntruth:    it stands {:.4} m before the wall, {:.4} m right of and {:.4} m above the middle; in the rectangle the spot is off by {:.2} mm rms, \
+            "\ntruth:    it stands {:.4} m before the wall, {} and {} the middle; in the rectangle the spot is off by {:.2} mm rms, \
              {:.2} mm at most (known because the head is simulated)",
             pose.distance_m,
-            pose.right_m,
-            pose.up_m,
+            toward(pose.right_m, 4, " m", "right of", "left of"),
+            toward(pose.up_m, 4, " m", "above", "below"),
             mm(*rms_m),
             mm(*most_m),
         );

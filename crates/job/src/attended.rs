@@ -22,6 +22,15 @@ impl Watched<'_> {
         self.hands.looks(if on { Look::Begun } else { Look::Over });
     }
 
+    /// Waits in the dark until whoever stands there has armed and lets it begin, where he does that; who calls for the job has done both otherwise.
+    pub(crate) fn await_hands(&mut self) {
+        let arms = self.hands.arms() && !self.job.dry;
+        while arms && !self.goes_on && !self.is_over() && self.hands.is_there() {
+            self.step();
+        }
+        self.goes_on = false;
+    }
+
     /// Tells whoever stands there what this tick was, and does what they ask.
     pub(crate) fn listen(&mut self) {
         let recovers = |fault| may_be_found_again(fault) && self.can_recover();

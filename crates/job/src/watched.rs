@@ -178,6 +178,7 @@ pub(crate) fn run_watched<'a>(
     if job.driving.rig.drive.kind.is_open_loop() {
         watched.await_darkness();
     }
+    watched.await_hands();
     // what was drawn until then is told whatever became of it
     let failure = watched.all(job.plan.clone(), job.drawing.clone()).err();
     watched.look(false);

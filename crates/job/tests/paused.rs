@@ -324,6 +324,55 @@ impl Hands for Quick {
     }
 }
 
+/// Somebody who arms a job before its first light.
+#[derive(Default)]
+struct Arms {
+    refused: Vec<String>,
+    armed: bool,
+}
+
+/// When he arms, and when he lets it begin, ticks.
+const ARMED_AT: u32 = 2000;
+const BEGUN_AT: u32 = 3000;
+
+impl Hands for Arms {
+    fn tick(&mut self, now: &Snapshot) -> Option<Ask> {
+        self.armed |= now.state == State::Armed;
+        match now.tick {
+            ARMED_AT => Some(Ask::Request(Request::Arm)),
+            BEGUN_AT => Some(Ask::Request(Request::Resume)),
+            _ => None,
+        }
+    }
+
+    fn event(&mut self, _: &Event) {}
+
+    fn refused(&mut self, why: &Refused) {
+        self.refused.push(why.to_string());
+    }
+
+    fn arms(&self) -> bool {
+        true
+    }
+
+    fn is_there(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn a_job_that_a_camera_follows_is_lit_only_once_somebody_has_armed_and_lets_it_begin() {
+    let stop = Stop::default();
+    let task = Task { progress: &NoProgress, stop: &stop };
+    let job = prepared(PICTURES[1], true, (3, &[]), task);
+    let (mut keep, mut arms) = (Light::default(), Arms::default());
+    let ran = job.run_by_hand(Head::Simulated, (&mut keep, &mut arms), task).unwrap();
+    assert!(ran.failure.is_none() && ran.finished, "{:?}", ran.failure);
+    assert!(arms.armed && arms.refused.is_empty(), "{:?}", arms.refused);
+    let first = keep.lit.first().unwrap().0[RUN];
+    assert!(first > BEGUN_AT, "lit at {first}");
+}
+
 #[test]
 fn a_job_that_was_stopped_lets_out_no_dots_before_somebody_arms() {
     let stop = Stop::default();

@@ -9,7 +9,7 @@
  * @typedef {{ unit: 'px' | 'm', corners: [number, number][], target_m: [number, number][], picture_px: [number, number] | null, unit_guessed: boolean }} Sheet how places of the drawing are named, and where they lie
  * @typedef {{ by: string, residual_mm: number[], rms_mm: number, worst: number }} Align
  * @typedef {{ target: { width_m: number, height_m: number, corners_m: [number, number][] }, strokes: { count: number, length_m: number }, plan: { duration_s: number },
- *   head: { spot_mm: number, best_distance_m: number, distance_m: number }, sequence: Stroke[], sheet: Sheet | null, align: Align | null, no_go: { outlines_m: [number, number][][] } | null }} PlanFigures
+ *   head: { spot_mm: number, best_distance_m: number, distance_m: number }, sequence: Stroke[], sheet: Sheet | null, align: Align | null, no_go: { outlines_m: [number, number][][], length_m?: number } | null }} PlanFigures
  * @typedef {{ id: number, command: string, plan: PlanFigures, remarks: string[], points: string }} Plan
  * @typedef {{ id: number, run: string, picture: string, flags: Flags | null, stage: string, done: number, of: number, remarks: string[], over: boolean, live: boolean, answer: any, failure: Failure | null }} Job
  * @typedef {{ id: string, folder: string, begun: string, picture: string | null, flags: Flags | null, rig: string | null, mode: string, points: { count: number, done: number } | null, files: { name: string, bytes: number }[], width_m: number, height_m: number, strokes: number, duration_s: number | null,

@@ -19,7 +19,7 @@ const field = (id) => /** @type {HTMLInputElement} */ (by(id))
 const shown = (id) => decodeURIComponent(id)
 
 export class Cameras {
-  /** @param {{ problem: (error: unknown) => void, place: (picture: string) => void, use: (flags: api.Flags) => void, changed: (all: api.Calibration[]) => void, flags: () => api.Flags, operates: boolean }} hooks */
+  /** @param {{ problem: (error: unknown) => void, place: (picture: string, calibration: string) => void, use: (flags: api.Flags) => void, changed: (all: api.Calibration[]) => void, flags: () => api.Flags, operates: boolean }} hooks */
   constructor(hooks) {
     this.hooks = hooks
     /** @type {asks.Camera[]} */
@@ -27,6 +27,8 @@ export class Cameras {
     /** @type {api.Calibration[]} */
     this.known = []
     this.id = ''
+    /** The one whose image is shown. */
+    this.opened = ''
     this.is_shown = false
     /** Which look is the newest: others have ended. */
     this.look = 0
@@ -39,7 +41,7 @@ export class Cameras {
     for (const id of ['hung', 'held']) by(id).addEventListener('change', () => this.#open())
     by('calibrate').addEventListener('click', () => this.#calibrate())
     by('find-head').addEventListener('click', () => this.#head())
-    by('place-seen').addEventListener('click', () => hooks.place(`camera:${this.#source()}`))
+    by('place-seen').addEventListener('click', () => hooks.place(`camera:${this.#source()}`, field('held').value))
     for (const id of ['print-paper', 'print-board']) by(id).addEventListener('change', () => this.#printed())
     new ResizeObserver(() => this.#paint()).observe(this.canvas)
     this.#printed()
@@ -69,6 +71,7 @@ export class Cameras {
       : 'Leave it where it is from now on: what is found holds as long as nobody moves, zooms or focuses it.'
     const simulated = camera?.simulated ?? false
     by('hung-row').hidden = by('head-step').hidden = !simulated
+    by('camera-name').setAttribute('placeholder', simulated ? 'simulated' : 'wall')
     if (!by_corners) await this.#open()
   }
 
@@ -122,12 +125,16 @@ export class Cameras {
   /** Opens the camera that is chosen, and shows what it sees. */
   async #open() {
     const look = ++this.look
-    this.sight = null
-    this.image = null
-    this.#paint()
+    if (this.opened !== this.#source()) {
+      // what another one saw says nothing of this one
+      this.sight = null
+      this.image = null
+      this.#paint()
+      by('seen-pages').replaceChildren()
+      by('seen-remarks').replaceChildren()
+    }
+    this.opened = this.#source()
     by('seen-words').textContent = 'Opens the camera…'
-    by('seen-pages').replaceChildren()
-    by('seen-remarks').replaceChildren()
     if (this.id === 'sim' && by('hung').childElementCount === 0) {
       const pictures = (await api.pictures()).filter((picture) => picture.shows && !picture.id.endsWith('.svg'))
       by('hung').replaceChildren(new Option('nothing but the pages', ''), ...pictures.map((picture) => new Option(picture.id, picture.id)))
@@ -212,6 +219,7 @@ export class Cameras {
     by(button).textContent = meanwhile
     // the camera is the work's as long as it lasts
     this.look++
+    by('seen-words').textContent = meanwhile
     try {
       const made = await work()
       this.hooks.problem(null)
@@ -233,7 +241,7 @@ export class Cameras {
   #calibrate() {
     const flags = /** @type {api.Flags} */ ({ lens: field('lens').value, bar: field('print-bar').value.trim() })
     const name = fileName(field('camera-name').value, this.id === 'sim' ? 'simulated' : 'wall')
-    return this.#work('calibrate', 'Looks…', () => asks.calibrate({ of: 'markers', name, camera: this.#source(), flags }))
+    return this.#work('calibrate', 'Calibrates…', () => asks.calibrate({ of: 'markers', name, camera: this.#source(), flags }))
   }
 
   /** Has the head draw dots, and finds it by them. */

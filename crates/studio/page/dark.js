@@ -3,7 +3,7 @@
 
 import { by, element } from './dom.js'
 import { areaOf } from './place.js'
-import { listed } from './words.js'
+import { length, listed } from './words.js'
 
 /**
  * @typedef {import('./api.js').Flags} Flags
@@ -42,6 +42,8 @@ export class Dark {
   show(plan) {
     this.outlines = plan?.no_go?.outlines_m ?? []
     const all = this.#all()
+    const summary = /** @type {HTMLElement} */ (by('dark').querySelector('summary'))
+    summary.textContent = all.length === 0 ? 'Never lit' : `Never lit (${all.length})${plan?.no_go?.length_m ? `: ${length(plan.no_go.length_m)} of lines left out` : ''}`
     if (this.shown === JSON.stringify(all)) return
     this.shown = JSON.stringify(all)
     by('dark-list').replaceChildren(

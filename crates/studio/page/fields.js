@@ -14,9 +14,9 @@ const GROUPS = [
     fields: [
       { flag: 'width', label: 'Width', hint: '24in, 60cm, 3m' },
       { flag: 'height', label: 'or height', hint: 'follows' },
-      { flag: 'offset', label: 'Right, up', hint: '10cm,-5cm' },
       { flag: 'from', label: 'Measured from', choices: [['', 'the middle'], ['bottom-left', 'left edge and floor'], ['bottom-right', 'right edge and floor'], ['top-left', 'left edge and top'], ['top-right', 'right edge and top']] },
       { flag: 'origin', label: 'Where that corner is', hint: '-1.5m,-1.2m' },
+      { flag: 'offset', label: 'Right, up', hint: '10cm,-5cm' },
       { flag: 'rotate', label: 'Turn', hint: '15deg' },
       { flag: 'distance', label: 'Head’s distance', hint: '3ft' },
       { flag: 'head', label: 'Head stands', choices: [['', 'square-on before the middle']] },
@@ -59,9 +59,12 @@ const GROUPS = [
   },
 ]
 
+/** Fields elsewhere on the page. @type {[string, string][]} */
+const OTHERS = [['bottom-left', 'Bottom left'], ['bottom-right', 'Bottom right'], ['top-right', 'Top right'], ['top-left', 'Top left'], ['simulate', 'Only try it'], ['size', 'Width, height'], ['bar', 'Printed bar measures'], ['to', 'To']]
+
 /** What a message calls a flag is what the form calls its field. @param {string} text */
 export function asLabelled(text) {
-  const labels = new Map(GROUPS.flatMap((group) => group.fields.map((field) => [field.flag.replaceAll('_', '-'), field.label])))
+  const labels = new Map([...OTHERS, ...GROUPS.flatMap((group) => group.fields.map((field) => /** @type {[string, string]} */ ([field.flag.replaceAll('_', '-'), field.label])))])
   return text.replace(/'?--([a-z][a-z-]*)( <[^>]*>)?'?/g, (all, flag) => (labels.has(flag) ? `“${labels.get(flag)}”` : all))
 }
 

@@ -8,6 +8,8 @@ import { by, element } from './dom.js'
 
 /** Corners, in the order in which somebody goes round: name, flag, where it is in the picture. @type {[string, string, number, number][]} */
 const CORNERS = [['Bottom left', 'bottom_left', 60, 190], ['Bottom right', 'bottom_right', 340, 190], ['Top right', 'top_right', 340, 50], ['Top left', 'top_left', 60, 50]]
+/** Angles there, as examples: pan is positive to the left, tilt downwards. */
+const SUCH_AS = ['21.3deg,12.9deg', '-21.3deg,12.9deg', '-21.3deg,-12.9deg', '21.3deg,-12.9deg']
 const SVG = 'http://www.w3.org/2000/svg'
 
 /** @param {string} id */
@@ -17,8 +19,8 @@ export class HeadCorners {
   /** @param {{ problem: (error: unknown) => void, made: (name: string) => void, operates: boolean }} hooks */
   constructor(hooks) {
     this.hooks = hooks
-    const rows = CORNERS.map(([name, flag]) => {
-      const input = element('input', { type: 'text', id: `at-${flag}`, placeholder: '21.3deg,12.9deg', spellcheck: 'false' })
+    const rows = CORNERS.map(([name, flag], n) => {
+      const input = element('input', { type: 'text', id: `at-${flag}`, placeholder: SUCH_AS[n], spellcheck: 'false' })
       input.addEventListener('focus', () => this.#light(flag))
       const take = element('button', { type: 'button', class: 'plain take', text: 'Here', 'aria-label': `${name}: where the head points now`, hidden: 'hidden' })
       take.addEventListener('click', () => this.#take(input))

@@ -96,6 +96,7 @@ export class Lab {
     this.problem = problem
     this.timer = 0
     this.locus = once(async () => new (await import('./locus.js')).Locus(by('lab-drag'), problem))
+    by('lab-form').addEventListener('submit', (event) => event.preventDefault())
     this.number = 0
     this.before = new AbortController()
     this.address = ''
@@ -246,7 +247,7 @@ export class Lab {
     } catch (error) {
       if (number === this.number) {
         this.problem(error)
-        by('lab-words').textContent = ''
+        by('lab-words').textContent = by('lab-command').textContent = ''
       }
       return null
     }
@@ -309,6 +310,8 @@ function blocks(text) {
 
 /** A paragraph of a lesson. @param {string} text */
 function paragraph(text) {
+  // the picture of what its experiment shows is plotted there
+  if (text.startsWith('![')) return element('span')
   if (text.startsWith('#')) return element('h3', { text: text.replace(/^#+ /, '') })
   if (/^( {4}|```)/.test(text)) return element('pre', { text: text.replace(/^```.*\n|\n?```$/g, '').replace(/^ {4}/gm, ''), tabindex: '0' })
   return element('p', { text: text.replaceAll('\n', ' ').replaceAll('`', '') })

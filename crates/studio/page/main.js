@@ -8,7 +8,6 @@ import { Beneath } from './beneath.js'
 import { Corners } from './corners.js'
 import { Dark } from './dark.js'
 import { Fields, asLabelled } from './fields.js'
-import { HeadPad } from './head.js'
 import { figures, noFigures } from './figures.js'
 import { keep, kept, themes, units } from './kept.js'
 import { follow, showResult } from './jobs.js'
@@ -102,7 +101,7 @@ const run = new Run(page, {
 
 run.operates = operates
 const pictures = new Pictures({ choose, chosen: () => store.asked.picture, problem, operates })
-const pad = new HeadPad(problem)
+const pad = once(async () => new (await import('./head.js')).HeadPad(problem))
 // what the first view does not need comes when somebody goes there
 const camera = once(async () => new (await import('./camera.js')).Camera({ take: (file) => void pictures.take(file), problem }))
 const views = new Views({
@@ -113,8 +112,9 @@ const views = new Views({
     store.flags(flags.rig === 'report' && !head ? { ...flags, rig: '' } : flags)
     location.hash = '#place'
   },
-  place: (picture) => {
+  place: (picture, calibration) => {
     choose(picture)
+    store.flags({ calibration })
     location.hash = '#place'
   },
   ownRigs,
@@ -314,7 +314,13 @@ function choose(picture, flags) {
   const no_go = listed(store.asked.flags.no_go).filter((area) => area.split(',').map(metres).filter((length) => length !== null).length === 4)
   const stays = Object.fromEntries(Object.entries({ distance, head, rig, from, origin, no_go }).filter(([, value]) => value && String(value) !== ''))
   // what was asked of one picture is not asked of another, but where the head stands, and what is of the wall
-  const next = { picture, flags: flags ?? /** @type {api.Flags} */ (isCamera(picture) ? { ...stays, from: '', origin: '', no_go: [] } : stays) }
+  const before = /** @type {Record<string, api.Flags>} */ (JSON.parse(kept('sessionStorage', 'placed') ?? '{}'))
+  before[store.asked.picture] = store.asked.flags
+  keep('sessionStorage', 'placed', JSON.stringify(before))
+  // one that lay here before lies there again; layers that are never lit are its own
+  const own = flags ?? before[picture]
+  const areas = [...no_go, ...listed(own?.no_go).filter((area) => area.split(',').length < 4)]
+  const next = { picture, flags: flags ?? /** @type {api.Flags} */ (isCamera(picture) ? { ...stays, from: '', origin: '', no_go: [] } : { ...own, ...stays, no_go: areas }) }
   if (next.picture === store.asked.picture && essence(next.flags) === essence(store.asked.flags)) return
   problem(null)
   wall.cancel()
@@ -371,7 +377,8 @@ function heads() {
   by('ribbon').textContent = unknown ? '? Head' : is_real ? `Real: ${name}` : draws ? `Practice: ${name}` : 'Simulated'
   by('ribbon').classList.toggle('real', is_real)
   run.atPort(draws, is_real)
-  pad.show(draws && operates)
+  // without a head at a port there is none to be moved
+  if (at_port) pad().then((view) => view.show(draws && operates)).catch(problem)
 }
 
 store.watch((asked) => {

@@ -98,6 +98,10 @@ export class Marks {
         const all = [...this.#all(), `${place}=${told(point, flags)}`]
         // what marks tell is not asked for beside them
         this.hooks.changed({ align: all, offset: '', ...(all.length > 1 ? { rotate: '', width: '', height: '' } : {}) })
+        // where it belongs is typed next
+        const typed = /** @type {HTMLInputElement | null} */ (by('mark-list').querySelector('li:last-child input'))
+        typed?.focus()
+        typed?.select()
       },
       cancelled: () => this.#over(),
     })

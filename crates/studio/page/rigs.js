@@ -2,6 +2,7 @@
 /** Rig files: read, written with what is wrong shown at its line, copied from presets, deleted, used. */
 
 import * as api from './api.js'
+import { fileName } from './calibrated.js'
 import { by, element } from './dom.js'
 
 /** How long what is typed rests before it is looked at, ms. */
@@ -90,6 +91,7 @@ export class Rigs {
   }
 
   #typed() {
+    this.hooks.problem(null)
     this.drafts.set(this.name, this.text.value)
     this.#lines(null)
     this.#state()
@@ -171,15 +173,37 @@ export class Rigs {
       this.#mark()
       this.hooks.changed()
     } catch (error) {
-      if (this.name === name) this.#wrong(error)
+      if (this.name === name && error instanceof api.Refusal && error.failure.code === 'busy') this.#other(error)
+      else if (this.name === name) this.#wrong(error)
     }
     this.#state()
+  }
+
+  /** Somebody else has changed it: asks whose text is kept. @param {api.Refusal} error */
+  #other(error) {
+    const { name } = this
+    const act = (/** @type {string} */ text, /** @type {() => Promise<void>} */ does) => {
+      const button = element('button', { type: 'button', class: 'plain', text })
+      button.addEventListener('click', () => does().catch(this.hooks.problem))
+      return button
+    }
+    const theirs = act('Read theirs, drop mine', async () => {
+      this.drafts.delete(name)
+      await this.#read(name)
+    })
+    const mine = act('Keep mine in its place', async () => {
+      this.kept = (await api.rig(name)).toml
+      await this.#save()
+    })
+    by('rig-wrong').hidden = false
+    by('rig-wrong').replaceChildren(element('strong', { text: error.failure.message.split(':')[0] }), element('div', { class: 'two' }, theirs, mine))
   }
 
   /** A new file, of a preset. @param {(base: string) => string | Promise<string>} text */
   async #make(text) {
     const field = /** @type {HTMLInputElement} */ (by('rig-name'))
-    const stem = field.value.trim().replace(/\.toml$/, '') || 'my-head'
+    const stem = fileName(field.value, 'my-head').replace(/\.toml$/, '')
+    this.hooks.problem(null)
     const free = (/** @type {string} */ name) => !this.all.some((rig) => rig.name === name)
     let name = `${stem}.toml`
     for (let n = 2; !free(name); n++) name = `${stem}-${n}.toml`

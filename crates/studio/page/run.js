@@ -202,6 +202,7 @@ export class Run {
     // what was left is drawn, or another run has its rest; what never began is still to be drawn
     if (ended?.answer) this.goOnWith(null)
     if (ended?.answer) field('from-stroke').value = ''
+    field('trouble').value = ''
     if (ended) this.hooks.ended(ended)
     this.hooks.heads()
   }
@@ -380,7 +381,7 @@ export class Run {
   /** What a camera sees of it, in words. */
   #sight() {
     const { seen, looks } = this
-    if (looks === 'begun') return 'Something is off: the camera looks into it, in the dark and by dots. Stop ends that.'
+    if (looks === 'begun') return 'Something is off. The camera looks into it in the dark, and by dots of light where it has to; then the job goes on by itself. Stop ends that.'
     if (looks === 'stopped') return 'Stopped, dark. Hold to arm, then Go on: the camera looks again.'
     return seen ? `The camera sees the spot ${plain(seen.rms_mm, 2)} mm off, rms, the last time ${plain(seen.off_mm, 2)} mm; ${seen.images} images` : ''
   }

@@ -10,7 +10,7 @@ const LATER = ['runs', 'compare', 'lab', 'rigs', 'cameras', 'devices']
 
 /**
  * @typedef {import('./api.js').Flags} Flags
- * @typedef {{ told: (where: string, error: unknown) => void, flags: () => Flags, use: (flags: Flags) => void, place: (picture: string) => void, ownRigs: () => void, calibrated: (all: import('./api.js').Calibration[]) => void, again: (of: import('./api.js').RunTold, view: string) => void, run: import('./run.js').Run, folder: () => string, entered: (attends: boolean) => void, outside: boolean, operates: boolean }} Hooks
+ * @typedef {{ told: (where: string, error: unknown) => void, flags: () => Flags, use: (flags: Flags) => void, place: (picture: string, calibration: string) => void, ownRigs: () => void, calibrated: (all: import('./api.js').Calibration[]) => void, again: (of: import('./api.js').RunTold, view: string) => void, run: import('./run.js').Run, folder: () => string, entered: (attends: boolean) => void, outside: boolean, operates: boolean }} Hooks
  */
 
 export class Views {

@@ -10,6 +10,7 @@ use serde_json::{Map, Value, json};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tracelight_task::Failure;
 
+use crate::answers::json_of;
 use crate::devices::Caller;
 use crate::flags::{Which, arguments, mode_of, typed};
 use crate::folder::Kind;
@@ -17,7 +18,7 @@ use crate::folder::{Folder, no_run};
 use crate::live::Live;
 use crate::names::Names;
 use crate::points::{self, Drawn};
-use crate::program::{Head, Performed, Program, Seat};
+use crate::program::{Head, Program, Seat};
 use crate::tasks::{AtLast, Ended, Work};
 use crate::watch::{Watching, as_camera, file_stem};
 
@@ -467,16 +468,6 @@ impl Desk {
         });
     }
 
-    /// What a command has answered.
-    ///
-    /// # Errors
-    /// What failed of what it worked on.
-    pub(crate) fn answer(performed: Performed) -> Result<Value, Failure> {
-        let failure = performed.failure.clone();
-        let answer = json_of(performed)?;
-        failure.map_or(Ok(answer), Err)
-    }
-
     /// What a command without a picture answers.
     ///
     /// # Errors
@@ -495,11 +486,6 @@ impl Drop for Attended<'_> {
     fn drop(&mut self) {
         self.0.end();
     }
-}
-
-fn json_of(performed: Performed) -> Result<Value, Failure> {
-    serde_json::from_str(&performed.json)
-        .map_err(|e| Failure::failed("internal", format!("the program's answer is no JSON: {e}")))
 }
 
 /// The command that draws what another one plans.

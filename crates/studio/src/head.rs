@@ -6,6 +6,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use tracelight_task::Failure;
 
+use crate::answers::answer;
 use crate::desk::Desk;
 use crate::tasks::{AtLast, Ended};
 
@@ -65,7 +66,7 @@ impl Desk {
         let _ended = AtLast(Arc::clone(&work));
         let done = self.program.perform(&command, None, (&*work, &work.stop));
         work.end(Ended { answer: Value::Null, failure: None });
-        Self::answer(done?)
+        answer(done?)
     }
 }
 

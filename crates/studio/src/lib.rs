@@ -4,6 +4,7 @@
 //! [`Program`] does. A job by the clock is attended from pages as from a terminal: one operates it, anybody stops it. The server listens on this
 //! computer alone, unless devices of the network are to be invited.
 
+mod answers;
 mod assets;
 mod beside;
 mod calibrations;

@@ -35,7 +35,7 @@ use crate::sent::sent;
 use crate::session;
 use crate::socket::{MOST_MESSAGE, ask, serve_socket, watch_operator};
 use crate::tasks::Wanting;
-use crate::watch::as_camera;
+use crate::watch::{as_camera, is_simulated};
 use crate::watching;
 
 /// Everything there is, for who comes in by that door.
@@ -174,7 +174,10 @@ async fn plan(
 ) -> Result<Json<Value>, Refused> {
     let Asked { picture, flags, page, number, .. } = asked(&bytes)?;
     if let Some(camera) = as_camera(&picture) {
-        only_operators(&caller)?;
+        // nobody is seen in a simulated room
+        if !is_simulated(camera) {
+            only_operators(&caller)?;
+        }
         desk.watching.free(camera).await;
     }
     let _waits = desk.waits(&caller)?;

@@ -171,6 +171,11 @@ pub(crate) fn as_camera(picture: &str) -> Option<&str> {
     picture.strip_prefix(AS_PICTURE)
 }
 
+/// Whether a camera is simulated, in a simulated room.
+pub(crate) fn is_simulated(camera: &str) -> bool {
+    camera.split(':').next() == Some(SIMULATED)
+}
+
 impl Watch {
     fn is_over(&self) -> bool {
         self.seen.borrow().ended.is_some()
