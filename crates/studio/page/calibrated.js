@@ -32,6 +32,6 @@ export function tell(place, made) {
   const title = `${calibration.name}: ${verdict(calibration)}`
   const more = [...remarks, ...(replaced ? [`What had that name before lies in the folder’s trash as ${replaced}.`] : [])]
   place.classList.toggle('failed', calibration.verdict === 'poor')
-  place.replaceChildren(element('h2', { text: title }), element('pre', { text: words, tabindex: '0', 'aria-label': 'What was found' }), element('ul', { class: 'remarks' }, ...more.map((remark) => element('li', { text: remark }))), element('code', { text: command }))
+  place.replaceChildren(element('h2', { text: title }), element('pre', { text: words, tabindex: '0', role: 'region', 'aria-label': 'What was found' }), element('ul', { class: 'remarks' }, ...more.map((remark) => element('li', { text: remark }))), element('code', { text: command }))
   place.hidden = false
 }

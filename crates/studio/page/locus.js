@@ -36,7 +36,7 @@ export class Locus {
     this.range = /** @type {HTMLInputElement} */ (element('input', { type: 'range', min: '0', step: '1', 'aria-label': 'Gain k' }))
     this.words = element('p', { role: 'status' })
     this.step = element('div', { class: 'plot' })
-    this.told = element('pre', { tabindex: '0', 'aria-label': 'The step of the closed loop' })
+    this.told = element('pre', { tabindex: '0', role: 'region', 'aria-label': 'The step of the closed loop' })
     const fit = element('button', { type: 'button', class: 'plain', text: 'Show all' })
     fit.addEventListener('click', () => this.#fit())
     place.replaceChildren(this.canvas, element('div', { class: 'gain' }, this.range, fit), this.words, this.step, this.told)
