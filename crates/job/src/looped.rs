@@ -2,7 +2,7 @@
 
 use tracelight_pipeline::{Driving, Schedule, schedule_as_it_is};
 use tracelight_session::{Again, Job, Repeated, StrokeTicks};
-use tracelight_sim::looped_job;
+use tracelight_sim::{looped_job, slowest_speed};
 use tracelight_stroke::{Drawing, Path, Place, Stroke};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, plan_from};
@@ -94,7 +94,9 @@ impl Looped {
         let again = plan_from(&drawing, &driving.machine, &driving.request, end.unwrap_or_default())
             .map_err(tracelight_pipeline::refused)?;
         let looped = looped_job(&driving.rig, (item.what, &once, &again), dry).ok_or_else(|| stands(item))?;
+        let slowest = |plan: &Plan| if dry { 0.0 } else { slowest_speed(&driving.rig, plan) };
         let job = Job {
+            slowest: slowest(&once).max(slowest(&again)),
             first: item.number,
             of,
             strokes: as_one(&looped.strokes),

@@ -306,7 +306,8 @@ impl<R: Rig> Session<R> {
             return Err(Refused::Speed { asked: rate });
         }
         let least = self.running.as_ref().map_or(0.0, |running| running.slowest);
-        if rate < least {
+        // what is told as so many percent is taken as that
+        if rate < least - 1e-4 {
             return Err(Refused::Slow { asked: rate, least });
         }
         self.speed = rate;

@@ -55,24 +55,24 @@ pub fn first_standing(rig: &RigConfig, plan: &Plan) -> Option<Standing> {
 /// The lowest speed of a plan's clock, as a share of the plan's own, at which its light stands nowhere: slower it is longer in each place. 0 where every speed that may
 /// be asked is fast enough.
 pub fn slowest_speed(rig: &RigConfig, plan: &Plan) -> f32 {
-    /// By which it is found.
-    const STEP: f32 = 0.05;
+    /// Steps of a whole by which it is found.
+    const STEPS: f32 = 20.0;
     let standing_ticks = (SLOWED_SHARE * rig.light.standing_s / TICK_F64_S) as u32;
     let config = Config { standing_ticks, ..rig.control_config() };
     let stands = |speed: f32| Watch::new(&config).pass(slowed(&plan.segments, speed)).is_some();
     if !stands(SPEED_RANGE.0) {
         return 0.0;
     }
-    let (mut least, mut most) = ((SPEED_RANGE.0 / STEP) as u32, (1.0 / STEP) as u32);
+    let (mut least, mut most) = ((SPEED_RANGE.0 * STEPS) as u32, STEPS as u32);
     while most - least > 1 {
         let middle = u32::midpoint(least, most);
-        if stands(STEP * middle as f32) {
+        if stands(middle as f32 / STEPS) {
             least = middle;
         } else {
             most = middle;
         }
     }
-    STEP * most as f32
+    most as f32 / STEPS
 }
 
 /// How long it must be dark between a way that is gone again and again, ticks, so that its light stands nowhere; `None` where no wait of up to

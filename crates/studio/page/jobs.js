@@ -46,7 +46,8 @@ export function showResult(card, ended) {
   card.append(element('h2', { text: `${called(picture)}: ${answer.simulated ? 'traced on the simulated head' : 'drawn'}` }))
   const found = [...(answer.laser?.faults ?? []).filter((/** @type {{ stops: boolean }} */ fault) => fault.stops).map((/** @type {{ code: string, t_s: number }} */ fault) => `after ${plain(fault.t_s, 1)} s: fault ${fault.code}`), ...(answer.camera?.follow?.recoveries ?? []).map((/** @type {{ t_s: number, what: string }} */ of) => `after ${plain(of.t_s, 1)} s ${of.what}`), ...(answer.camera?.follow?.remarks ?? [])]
   card.classList.toggle('failed', found.length > 0)
-  if (found.length > 0) card.append(element('ul', { class: 'remarks' }, ...found.map((text) => element('li', { text }))))
+  // a remark may say the same
+  if (found.length > 0) card.append(element('ul', { class: 'remarks' }, ...[...new Set(found)].map((text) => element('li', { text }))))
   card.append(
     element('img', { src: runFile(run, 'trace.png'), alt: 'What a camera with an open shutter would have seen of the wall', width: '320' }),
     element('p', {}, element('strong', { text: `${plain(tracking.max_mm, 2)} mm` }), ' off at most, ', element('strong', { text: `${plain(tracking.rms_mm, 3)} mm` }), ' rms'),

@@ -120,6 +120,7 @@ export class Lab {
     this.problem(null)
     this.inputs.clear()
     by('lab-form').replaceChildren()
+    if (!by('lab-drag').hidden) this.locus().then((view) => view.leave(), () => {})
     by('lab-drag').hidden = true
     by('lab-plot').replaceChildren()
     by('lab-words').textContent = by('lab-command').textContent = ''
@@ -241,6 +242,7 @@ export class Lab {
       this.problem(null)
       this.#plot(told)
       await this.#dragged(asked, told)
+      if (number !== this.number) return null
       by('lab-words').textContent = told.words
       by('lab-command').textContent = told.command
       return told

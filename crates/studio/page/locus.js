@@ -57,6 +57,12 @@ export class Locus {
     this.#to(nearest(found.gains, 1))
   }
 
+  /** Asks for nothing any more. */
+  leave() {
+    clearTimeout(this.timer)
+    this.number++
+  }
+
   /** Shows all open poles and zeros, and where the closed ones are at gains that anybody uses. */
   #fit() {
     const { found } = this

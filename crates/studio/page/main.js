@@ -13,14 +13,14 @@ import { keep, kept, themes, units } from './kept.js'
 import { follow, showResult } from './jobs.js'
 import { Marks } from './marks.js'
 import { Pictures } from './pictures.js'
-import { boxOf, flagsOf, measuredAnew, planned } from './place.js'
+import { boxOf, flagsOf, measuredAnew, ofWall, onWall as placedOn, planned } from './place.js'
 import { Run } from './run.js'
 import { Store, essence } from './store.js'
 import { Timeline } from './timeline.js'
 import { askUnit } from './unit.js'
 import { Views } from './views.js'
 import { NOWHERE, Wall } from './wall.js'
-import { called, isCamera, listed, metres, shown } from './words.js'
+import { called, isCamera, shown } from './words.js'
 
 /** How long a wish rests before it is planned, ms. */
 const REST = 150
@@ -309,18 +309,16 @@ async function stop() {
 
 /** Puts a picture on the wall. @param {string} picture @param {api.Flags} [flags] */
 function choose(picture, flags) {
-  const { distance, head, rig, from, origin } = store.asked.flags
-  // areas of the wall stay; layers are a drawing's own
-  const no_go = listed(store.asked.flags.no_go).filter((area) => area.split(',').map(metres).filter((length) => length !== null).length === 4)
-  const stays = Object.fromEntries(Object.entries({ distance, head, rig, from, origin, no_go }).filter(([, value]) => value && String(value) !== ''))
-  // what was asked of one picture is not asked of another, but where the head stands, and what is of the wall
-  const before = /** @type {Record<string, api.Flags>} */ (JSON.parse(kept('sessionStorage', 'placed') ?? '{}'))
-  before[store.asked.picture] = store.asked.flags
+  const { picture: was, flags: asked } = store.asked
+  const remembered = (/** @type {string} */ name) => JSON.parse(kept('sessionStorage', name) ?? 'null')
+  // what a camera sees has no place to be given: the wall is as it was before
+  const { distance, head, rig } = asked
+  const on_wall = ofWall(isCamera(was) ? { ...remembered('wall'), distance, head, rig } : asked)
+  const before = /** @type {Record<string, api.Flags>} */ ({ ...remembered('placed'), [was]: asked })
+  keep('sessionStorage', 'wall', JSON.stringify(on_wall))
   keep('sessionStorage', 'placed', JSON.stringify(before))
-  // one that lay here before lies there again; layers that are never lit are its own
-  const own = flags ?? before[picture]
-  const areas = [...no_go, ...listed(own?.no_go).filter((area) => area.split(',').length < 4)]
-  const next = { picture, flags: flags ?? /** @type {api.Flags} */ (isCamera(picture) ? { ...stays, from: '', origin: '', no_go: [] } : { ...own, ...stays, no_go: areas }) }
+  // what was asked of one picture is not asked of another, but what is of the wall and the head
+  const next = { picture, flags: flags ?? (isCamera(picture) ? ofWall({ distance, head, rig }) : placedOn(before[picture], on_wall)) }
   if (next.picture === store.asked.picture && essence(next.flags) === essence(store.asked.flags)) return
   problem(null)
   wall.cancel()

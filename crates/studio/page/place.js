@@ -134,3 +134,22 @@ function shifted(mark, dx, dy) {
   const [x, y] = (to ?? '').split(',').map((text) => metres(text))
   return x == null || y == null ? null : `${at}=${typed(x + dx)},${typed(y + dy)}`
 }
+
+/** Whether an area is one of the wall, right, up, width, height, and no layer's name. @param {string} area */
+const isArea = (area) => area.split(',').length === 4
+
+/** What is of the wall and the head, whatever is drawn. @param {Flags} flags @returns {Flags} */
+export function ofWall({ distance, head, rig, from, origin, no_go }) {
+  const areas = listed(no_go).filter(isArea)
+  const all = Object.entries({ distance, head, rig, from, origin }).filter(([, value]) => value)
+  return { .../** @type {Flags} */ (Object.fromEntries(all)), ...(areas.length > 0 ? { no_go: areas } : {}) }
+}
+
+/** The flags of a picture that comes onto a wall: as it lay there before, unless lengths are measured from elsewhere now. @param {Flags | undefined} own @param {Flags} wall @returns {Flags} */
+export function onWall(own, wall) {
+  const { distance, head, rig, from, origin, no_go, offset, align, ...others } = own ?? {}
+  const is_alike = (from || '') === (wall.from || '') && (origin || '') === (wall.origin || '')
+  const lies = Object.fromEntries(Object.entries({ offset, align }).filter(([, value]) => is_alike && value))
+  const areas = [...listed(wall.no_go), ...listed(no_go).filter((area) => !isArea(area))]
+  return { ...others, ...lies, ...wall, ...(areas.length > 0 ? { no_go: areas } : {}) }
+}

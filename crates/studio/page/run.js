@@ -18,7 +18,7 @@ const ON = ['tracing', 'stepping', 'pointing', 'framing', 'returning', 'pausing'
 /** What states are called. @type {Record<string, string>} */
 const STATES = {
   unhomed: 'It does not know where it points', ready: 'Ready, dark', parking: 'Goes to zero, dark', armed: 'Armed', framing: 'Shows the frame', tracing: 'Traces', stepping: 'Draws it again and again',
-  pointing: 'Marks a point', returning: 'Dark, on its way back to the stroke', pausing: 'Pauses after this stroke', paused: 'Paused, dark', stopped: 'Stopped, dark', done: 'Done, dark', fault: 'A fault: dark', lost: 'The head is gone',
+  pointing: 'Marks a point', returning: 'Dark, on its way back to the stroke', pausing: 'Pauses after this stroke', homing: 'Finds out where it points, by dots', jogging: 'Moves, dark', marking: 'Shows a dot', paused: 'Paused, dark', stopped: 'Stopped, dark', done: 'Done, dark', fault: 'A fault: dark', lost: 'The head is gone',
 }
 
 /**
@@ -135,7 +135,7 @@ export class Run {
     if (isRoom(picture) && field('trouble').value !== '') asked.sim_trouble = field('trouble').value
     if (field('dry').checked) asked.dry_run = true
     const from = field('from-stroke').value.trim()
-    if (from !== '' && from !== '1') asked.from_stroke = from
+    if (from !== '' && from !== '1' && !isCamera(picture)) asked.from_stroke = from
     if (mode === 'step') asked.step = true
     if (mode === 'points') asked.points = 'all'
     if (mode !== 'trace' && field('pace').value.trim() !== '') asked.pace = field('pace').value.trim()
@@ -320,6 +320,10 @@ export class Run {
       this.#say('The page that operates it keeps it.')
     } else if (told.event === 'refused') {
       this.#say(told.message)
+      // what was refused is not so
+      const percent = Math.round(100 * (this.now.speed ?? 1))
+      field('faster').value = String(percent)
+      by('percent').textContent = `${percent} %`
     } else if (told.event === 'seen') {
       this.seen = told
     } else if (told.event === 'looks') {
@@ -389,6 +393,8 @@ export class Run {
   #show() {
     by('seen-now').textContent = this.#sight()
     by('seen-now').hidden = this.#sight() === ''
+    // what was so before light need not be so after a fault
+    by('checks').hidden = this.looks !== 'over' || ['fault', 'unhomed'].includes(this.state)
     const { state, now, on, mine } = this
     const is_on = ON.includes(state)
     const armed = state === 'armed'

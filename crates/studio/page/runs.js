@@ -3,7 +3,7 @@
 
 import { discard, restore, runFile, runs } from './api.js'
 import { by, element } from './dom.js'
-import { length, named, plain, size, time } from './words.js'
+import { isCamera, length, named, plain, size, time } from './words.js'
 
 /**
  * @typedef {import('./api.js').RunTold} RunTold
@@ -49,7 +49,7 @@ export class Runs {
       if (run.left) acts.append(act('Go on', `Go on: ${id}`, () => hooks.rest(run)))
       if (run.picture) acts.append(act('Place again', `Place again: ${id}`, () => hooks.again(run)))
       // of a rest strokes have other numbers
-      const is_whole = !run.went_on_in && !run.goes_on_with && run.mode === 'trace'
+      const is_whole = !run.went_on_in && !run.goes_on_with && run.mode === 'trace' && !isCamera(run.picture ?? '')
       if (run.picture && run.progress && !run.finished && run.progress.stroke > 1 && is_whole) acts.append(act(`From stroke ${run.progress.stroke}`, `From stroke ${run.progress.stroke}: ${id}`, () => hooks.from(run, run.progress?.stroke ?? 1)))
     }
     const compare = act('Compare', `Compare: ${id}`, () => this.#choose(id))

@@ -113,6 +113,10 @@ impl Desk {
         }
         let mut command = vec!["calibrate".to_owned(), of.word().to_owned()];
         command.extend(named_values(flags, |flag| of.flags().contains(&flag), &self.names())?);
+        // a head is that of the studio, where the page chooses no other
+        if let Some(head) = self.head_of(flags).filter(|_| of.kind() == Kind::Heads) {
+            command.push(format!("--rig={}", head.planned_as));
+        }
         let looks = matches!(of, Of::Markers | Of::Head);
         match camera.as_ref().filter(|_| looks) {
             Some(camera) => command.push(format!("--camera={}", self.source(camera)?)),

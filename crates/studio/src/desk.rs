@@ -12,7 +12,7 @@ use tracelight_task::Failure;
 
 use crate::answers::json_of;
 use crate::devices::Caller;
-use crate::flags::{Which, arguments, mode_of, typed};
+use crate::flags::{Which, arguments, draws_all, mode_of, typed};
 use crate::folder::Kind;
 use crate::folder::{Folder, no_run};
 use crate::live::Live;
@@ -20,7 +20,7 @@ use crate::names::Names;
 use crate::points::{self, Drawn};
 use crate::program::{Head, Program, Seat};
 use crate::tasks::{AtLast, Ended, Work};
-use crate::watch::{Watching, as_camera, file_stem};
+use crate::watch::{Watching, as_camera, file_stem, is_simulated};
 
 /// Plans whose points are kept for pages to fetch.
 const KEPT_PLANS: usize = 16;
@@ -86,6 +86,14 @@ pub(crate) struct Wanted<'a> {
     pub(crate) operator: Option<&'a str>,
 }
 
+impl Wanted<'_> {
+    /// Whether it draws what was planned: all of it, in that order, and nothing that a camera sees anew.
+    fn is_as_planned(&self) -> bool {
+        draws_all(self.flags)
+            && matches!(self.subject, Subject::Picture(of) if as_camera(of).is_none_or(is_simulated))
+    }
+}
+
 /// What is to be drawn.
 #[derive(Clone, Copy)]
 pub(crate) enum Subject<'a> {
@@ -142,7 +150,7 @@ impl Desk {
     }
 
     /// The head that the studio was opened for, where a page chooses no other.
-    fn head_of(&self, flags: &Map<String, Value>) -> Option<&Head> {
+    pub(crate) fn head_of(&self, flags: &Map<String, Value>) -> Option<&Head> {
         let chooses = flags.get("rig").and_then(Value::as_str).is_some_and(|rig| !rig.trim().is_empty());
         self.program.head().filter(|_| !chooses)
     }
@@ -355,8 +363,7 @@ impl Desk {
                 live: operator.is_some(),
             });
         }
-        *locked(&self.drawn) =
-            self.planned_of(&picture, &flags).filter(|_| matches!(wanted.subject, Subject::Picture(_)));
+        *locked(&self.drawn) = self.planned_of(&picture, &flags).filter(|_| wanted.is_as_planned());
         // from here on it ends, whatever becomes of it
         let last = AtLast(Arc::clone(&work));
         let named = as_camera(&picture).map_or_else(|| picture.clone(), file_stem);
@@ -366,8 +373,7 @@ impl Desk {
         }
         command.extend(["--out".to_owned(), dir.to_string_lossy().into_owned(), "--json".to_owned()]);
         let desk = Arc::clone(self);
-        let (begun, is_live) = (self.job(), operator.is_some());
-        let mode = mode_of(&command);
+        let (begun, is_live, mode) = (self.job(), operator.is_some(), mode_of(&command));
         operator.iter().for_each(|page| self.live.begin(page, mode));
         Ok((begun, move || {
             let _last = last;

@@ -1,6 +1,6 @@
 //! What a page asks for, as a command line has it: the same names with underscores, the same values as text.
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use tracelight_task::{Failure, nearest, quoted};
 
 use crate::names::Names;
@@ -175,6 +175,12 @@ pub(crate) fn asked_by(command: &[String]) -> Option<(&str, Map<String, Value>)>
     (name == "trace").then_some((picture.as_str(), flags))
 }
 
+/// Whether by these flags a job draws all strokes, once, one after the other.
+pub(crate) fn draws_all(flags: &Map<String, Value>) -> bool {
+    let is_left_out = |value: &Value| [json!(""), json!(false), Value::Null].contains(value);
+    ["from_stroke", "step", "points", "frame"].iter().all(|flag| flags.get(*flag).is_none_or(is_left_out))
+}
+
 /// How a command line draws strokes: all, one at a time, or points.
 pub(crate) fn mode_of(command: &[String]) -> &'static str {
     let has = |flag: &str| command.iter().any(|argument| argument.split('=').next() == Some(flag));
@@ -208,7 +214,6 @@ pub(crate) fn typed(arguments: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
 
     fn of(flags: Value) -> Result<Vec<String>, Failure> {
         let Value::Object(flags) = flags else { unreachable!() };

@@ -31,6 +31,8 @@ const WHOLE: Duration = Duration::from_secs(600);
 /// What anybody may ask who reaches a door.
 const STOP: &str = "/api/v1/stop";
 const JOIN: &str = "/api/v1/session/join";
+/// What is read and has an effect: a camera is opened, pages are made.
+const EFFECTS: [&str; 2] = ["/api/v1/cameras", "/api/v1/calibrations/pages.pdf"];
 /// What is read by Foxglove, also by its page on the net, which runs in a browser of this computer.
 const FOXGLOVE: &str = "/api/v1/foxglove";
 const FOXGLOVE_PAGE: &str = "https://app.foxglove.dev";
@@ -112,7 +114,9 @@ fn admitted(door: &Door, request: &mut Request) -> Result<(), Refused> {
     let is_foxglove =
         is_read && request.uri().path() == FOXGLOVE && text(ORIGIN.as_str()) == Some(FOXGLOVE_PAGE);
     // a socket that is opened is read by GET, and browsers let any page open one
-    if (!is_read || is_socket) && (is_foreign || !is_own) && !is_foxglove {
+    let has_effect =
+        !is_read || is_socket || EFFECTS.iter().any(|path| request.uri().path().starts_with(path));
+    if has_effect && (is_foreign || !is_own) && !is_foxglove {
         return Err(forbidden("another page asked for this, and only the studio's own may"));
     }
     let caller = door.caller(headers);

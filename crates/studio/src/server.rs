@@ -178,13 +178,16 @@ async fn plan(
         if !is_simulated(camera) {
             only_operators(&caller)?;
         }
-        desk.watching.free(camera).await;
     }
     let _waits = desk.waits(&caller)?;
     // a page of another device is another page, whatever it calls itself
     let page = if page.is_empty() { page } else { format!("{}:{page}", caller.device) };
     let planned = desk.begin_plan((&page, number), &picture, &flags)?;
     let turn = Arc::clone(&desk.planning).lock_owned().await;
+    // what draws over it has it for itself; a simulated one is there for everybody
+    if let Some(camera) = as_camera(&picture).filter(|camera| !is_simulated(camera)) {
+        desk.watching.free(camera).await;
+    }
     beside(move || {
         let _turn = turn;
         let made = desk.plan(planned)?;
@@ -211,7 +214,7 @@ async fn trace(State(desk): Shared, bytes: Bytes) -> Result<(StatusCode, Json<Va
     if attended && page.is_empty() {
         return Err(Refused::usage("a job that is attended names the page that operates it"));
     }
-    if let Some(camera) = as_camera(&picture) {
+    if let Some(camera) = as_camera(&picture).filter(|camera| !is_simulated(camera)) {
         desk.watching.free(camera).await;
     }
     let threads = tokio::runtime::Handle::current();

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -30,6 +31,8 @@ const MOST: usize = 2;
 #[derive(Default)]
 pub(crate) struct Watching {
     all: Mutex<Vec<Arc<Watch>>>,
+    /// The number that was given last.
+    numbers: Arc<AtomicU64>,
 }
 
 /// A camera that is looked through.
@@ -39,6 +42,7 @@ struct Watch {
     held: String,
     stop: Stop,
     asked: Mutex<Instant>,
+    numbers: Arc<AtomicU64>,
     seen: watch::Sender<Seen>,
 }
 
@@ -78,10 +82,12 @@ impl Watching {
             Some(watch) => watch,
             None => self.opened(program, (id, held), command).await,
         };
-        *locked(&watch.asked) = Instant::now();
+        // of a studio that was open before
+        let after = if after > self.numbers.load(Ordering::Relaxed) { 0 } else { after };
         let mut seen = watch.seen.subscribe();
         let waited =
             timeout(PATIENCE, seen.wait_for(|seen| seen.number > after || seen.ended.is_some())).await;
+        *locked(&watch.asked) = Instant::now();
         let seen = match waited {
             Ok(Ok(seen)) => seen.clone(),
             Ok(Err(_)) => return Err(broken()),
@@ -127,6 +133,7 @@ impl Watching {
             held: held.to_owned(),
             stop: Stop::default(),
             asked: Mutex::new(Instant::now()),
+            numbers: Arc::clone(&self.numbers),
             seen: watch::Sender::new(Seen::default()),
         });
         locked(&self.all).push(Arc::clone(&watch));
@@ -183,14 +190,18 @@ impl Watch {
 
     /// Takes an image; whether somebody wants more.
     fn take(&self, jpeg: Vec<u8>, told: Value) -> bool {
+        // no two images of any camera have one number: a page knows by it what it has seen
+        let number = self.numbers.fetch_add(1, Ordering::Relaxed) + 1;
         self.seen.send_modify(|seen| {
-            seen.number += 1;
+            seen.number = number;
             seen.images.push_back((seen.number, Bytes::from(jpeg), Arc::new(told)));
             if seen.images.len() > KEPT {
                 seen.images.pop_front();
             }
         });
-        locked(&self.asked).elapsed() < UNASKED && !self.stop.is_wanted()
+        // who waits asks still
+        let is_wanted = self.seen.receiver_count() > 0 || locked(&self.asked).elapsed() < UNASKED;
+        is_wanted && !self.stop.is_wanted()
     }
 
     /// Looks until nobody wants more.

@@ -24,9 +24,14 @@ struct Noting {
     asked: Sender<Vec<String>>,
     traced: Mutex<Receiver<()>>,
     runs: Arc<Mutex<String>>,
+    head: Option<crate::program::Head>,
 }
 
 impl Program for Noting {
+    fn head(&self) -> Option<&crate::program::Head> {
+        self.head.as_ref()
+    }
+
     fn rigs(&self) -> Vec<String> {
         vec!["report".to_owned()]
     }
@@ -119,11 +124,16 @@ impl Drop for Studio {
 }
 
 fn studio(name: &str) -> Studio {
+    studio_of(name, None)
+}
+
+/// One that was opened for a head.
+fn studio_of(name: &str, head: Option<crate::program::Head>) -> Studio {
     let dir = std::env::temp_dir().join(format!("tracelight-studio-{name}-{}", std::process::id()));
     let (asked_by, asked) = channel();
     let (go_on, traced) = channel();
     let runs = Arc::new(Mutex::new(r#"{"runs":[]}"#.to_owned()));
-    let program = Noting { asked: asked_by, traced: Mutex::new(traced), runs: Arc::clone(&runs) };
+    let program = Noting { asked: asked_by, traced: Mutex::new(traced), runs: Arc::clone(&runs), head };
     let desk = Arc::new(Desk::new(Box::new(program), Folder::open(&dir).unwrap()));
     let devices = Arc::new(Devices::default());
     let lan = Some(Arc::new(Lan { port: 4461, fingerprint: "AB:CD".to_owned() }));

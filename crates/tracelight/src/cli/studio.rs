@@ -96,7 +96,11 @@ impl Program for Commands {
             let id = path.file_name()?.to_str()?.to_owned();
             Some(Camera { id, name, source: path.to_str()?.to_owned() })
         });
-        plugged.chain(named).collect()
+        let plugged: Vec<Camera> = plugged.collect();
+        // one that is plugged in, too, is one camera
+        let named: Vec<Camera> =
+            named.filter(|named| plugged.iter().all(|camera| camera.source != named.source)).collect();
+        plugged.into_iter().chain(named).collect()
     }
 
     fn look(
@@ -189,7 +193,12 @@ fn camera(name: &str) -> Result<String, Failure> {
             let path = std::path::absolute(path).unwrap_or_else(|_| path.into());
             Ok(path.to_string_lossy().into_owned())
         }
-        Source::Net(_) | Source::Device(_) => Ok(name.to_owned()),
+        // whatever link names it
+        Source::Device(path) => {
+            let real = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
+            Ok(real.to_string_lossy().into_owned())
+        }
+        Source::Net(_) => Ok(name.to_owned()),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_camera_is_looked_through_image_by_image_and_let_go_for_what_needs_it() {
+fn a_camera_is_looked_through_image_by_image() {
     run(async {
         let studio = studio("cameras");
         let (_, all) = studio.get("/api/v1/cameras").await;
@@ -30,10 +30,17 @@ fn a_camera_is_looked_through_image_by_image_and_let_go_for_what_needs_it() {
             "{command:?}"
         );
         assert_eq!(command[2], "--distance=3m");
-        // it is opened anew
-        let (_, body) = studio.get("/api/v1/cameras/sim:house.png/look").await;
+        // a simulated one is there for everybody, and no image has the number of another
+        let (_, body) = studio.get(&format!("/api/v1/cameras/sim:house.png/look?after={last}")).await;
         let told: Value = serde_json::from_slice(&body).unwrap();
-        assert!(told["number"].as_u64().unwrap() < last, "{told}");
+        assert!(told["number"].as_u64().unwrap() > last, "{told}");
+        // a number of a studio that was open before counts for nothing
+        let (status, _) = studio.get("/api/v1/cameras/sim:house.png/look?after=123456789").await;
+        assert_eq!(status, StatusCode::OK);
+        // what opens a camera is nobody's but the studio's own pages', though it is read
+        let request = Request::get("/api/v1/cameras/sim/look").header("host", "127.0.0.1:4460");
+        let request = request.header("sec-fetch-site", "cross-site").body(Body::empty()).unwrap();
+        assert_eq!(studio.send(request).await.0, StatusCode::FORBIDDEN);
     });
 }
 
@@ -113,6 +120,27 @@ fn a_calibration_is_kept_by_its_name_and_what_it_replaces_lies_in_the_trash() {
         assert_eq!(status, StatusCode::NOT_FOUND);
         let (status, _) = studio.post("/api/v1/trash/heads/shed.toml~2", "").await;
         assert_eq!(status, StatusCode::OK);
+    });
+}
+
+#[test]
+fn a_head_that_is_calibrated_is_the_one_that_the_studio_was_opened_for() {
+    run(async {
+        let head = crate::program::Head {
+            draws_as: "/dev/x:own.toml".to_owned(),
+            planned_as: "own.toml".to_owned(),
+            is_at_port: true,
+            is_real: true,
+        };
+        let studio = studio_of("own-head", Some(head));
+        let asked = |rig: &str| {
+            format!(r#"{{"of":"corners","name":"x.toml","flags":{{"simulate":true,"rig":"{rig}"}}}}"#)
+        };
+        assert_eq!(studio.post("/api/v1/calibrations", asked("")).await.0, StatusCode::OK);
+        assert_eq!(studio.asked.recv().unwrap()[2..4], ["--simulate", "--rig=own.toml"]);
+        while studio.asked.try_recv().is_ok() {}
+        assert_eq!(studio.post("/api/v1/calibrations", asked("report")).await.0, StatusCode::OK);
+        assert!(studio.asked.recv().unwrap().contains(&"--rig=report".to_owned()));
     });
 }
 
