@@ -65,12 +65,22 @@ impl FrameName {
 
 /// A time on one stroke or point, s.
 pub fn each(text: &str) -> Result<f64, String> {
-    const RANGE: std::ops::RangeInclusive<f64> = 0.1..=300.0;
+    time_up_to(text, 300.0)
+}
+
+/// How long a server is there, s: a day at most.
+///
+/// # Errors
+/// What is none, in words.
+pub fn served(text: &str) -> Result<f64, String> {
+    time_up_to(text, 86_400.0)
+}
+
+fn time_up_to(text: &str, most_s: f64) -> Result<f64, String> {
+    const LEAST_S: f64 = 0.1;
     let time_s = parse(text, TIMES).map_err(|e| e.to_string())?;
-    let is_one = RANGE.contains(&time_s);
-    is_one
-        .then_some(time_s)
-        .ok_or_else(|| format!("{text} is not between {} s and {} s", RANGE.start(), RANGE.end()))
+    let is_one = (LEAST_S..=most_s).contains(&time_s);
+    is_one.then_some(time_s).ok_or_else(|| format!("{text} is not between {LEAST_S} s and {most_s} s"))
 }
 
 /// How many times as fast as real time, from 0.25 to 8.

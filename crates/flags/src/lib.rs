@@ -15,7 +15,7 @@ mod shapes;
 mod tracing;
 mod wall;
 
-pub use by_hand::{ByHandArgs, FrameName, each, factor};
+pub use by_hand::{ByHandArgs, FrameName, each, factor, served};
 pub use choosing::ChoiceArgs;
 pub use laws::{LawArgs, law, observer};
 pub use lettering::LetteringArgs;

@@ -16,7 +16,7 @@ use tracelight_task::{Failure, Progress, Stop, Task};
 use crate::cli::answer::{Answer, LooksFor, PerformsWith, Voice};
 use crate::cli::trace;
 use crate::named;
-use tracelight_flags::each;
+use tracelight_flags::served;
 
 /// Open the studio: a page in the browser where a picture is placed on the wall, planned and traced on the simulated rig
 ///
@@ -49,7 +49,7 @@ pub(crate) struct StudioArgs {
     #[arg(long)]
     no_open: bool,
     /// How long, such as 30s [default: until Ctrl-C]
-    #[arg(long = "for", value_name = "TIME", value_parser = each)]
+    #[arg(long = "for", value_name = "TIME", value_parser = served)]
     lasts_s: Option<f64>,
     #[command(flatten)]
     pub(crate) voice: Voice,
