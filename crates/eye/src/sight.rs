@@ -9,7 +9,7 @@ use tracelight_rigfile::camera::KnownCamera;
 use tracelight_task::Failure;
 
 use crate::grey;
-use crate::wall::{Exposed, exposed, markers, see_wall};
+use crate::wall::{Exposed, exposed, markers, wall_by};
 
 /// What one image tells.
 #[derive(Clone, Debug)]
@@ -59,7 +59,7 @@ impl Sight {
             size_px: [pixels.width(), pixels.height()],
             exposed: exposed(pixels),
             pages: pages(&markers),
-            held: known.map(|known| held(pixels, known)),
+            held: known.map(|known| held(pixels, &markers, known)),
             markers,
         })
     }
@@ -135,7 +135,9 @@ impl Sight {
     /// For scripts.
     #[must_use]
     pub fn json(&self) -> Value {
-        let marker = |tag: &SeenTag| json!({ "id": tag.id, "corners_px": tag.corners.map(|corner| [corner.x, corner.y]) });
+        let page_of =
+            |tag: &SeenTag| Board::ALL.iter().find_map(|board| board.find(tag.id)).map(|(page, _)| page + 1);
+        let marker = |tag: &SeenTag| json!({ "id": tag.id, "page": page_of(tag), "corners_px": tag.corners.map(|corner| [corner.x, corner.y]) });
         let page = |page: &PageInSight| json!({ "page": page.number, "board": page.board(), "markers": page.markers[0], "of": page.markers[1] });
         json!({
             "width_px": self.size_px[0],
@@ -173,8 +175,8 @@ fn pages(markers: &[SeenTag]) -> Vec<PageInSight> {
 }
 
 /// Holds an image against a calibration.
-fn held(pixels: &Raster, known: &KnownCamera) -> Held {
-    match see_wall(pixels.clone(), Some(known)) {
+fn held(pixels: &Raster, markers: &[SeenTag], known: &KnownCamera) -> Held {
+    match wall_by(pixels.clone(), markers.to_vec(), Some(known)) {
         Ok(wall) if wall.rms_px.is_none() => Held {
             rms_px: None,
             remarks: vec![

@@ -70,6 +70,18 @@ const MOST_SHOTS: usize = 10;
 /// `camera-image`: an image of another size than the lens that is known. `camera-not-found`: markers in sight that fit no camera, or none.
 pub fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<SeenWall, Failure> {
     let tags = markers(&grey(&pixels)?);
+    wall_by(pixels, tags, known)
+}
+
+/// Likewise, from markers that were found in the image already.
+///
+/// # Errors
+/// As of [`see_wall`].
+pub(crate) fn wall_by(
+    pixels: Raster,
+    tags: Vec<SeenTag>,
+    known: Option<&KnownCamera>,
+) -> Result<SeenWall, Failure> {
     let markers = tags.len();
     let size = (pixels.width() as usize, pixels.height() as usize);
     let belief = known.map_or_else(|| LensBelief::unknown(size.0, size.1), |known| known.lens);

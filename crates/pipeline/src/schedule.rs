@@ -54,8 +54,7 @@ pub fn schedule(placed: &Placed, driving: &Driving) -> Result<Schedule, Failure>
 /// # Errors
 /// As of [`schedule`], but that no speed is too fast for it: its longest stroke may be drawn.
 pub fn schedule_rest(drawing: Drawing, driving: &Driving) -> Result<Schedule, Failure> {
-    let cost = TravelTime::new(&driving.machine, &driving.request);
-    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), Some(May::Cut), driving)
+    in_its_order(drawing, Some(May::Cut), driving)
 }
 
 /// Times the rest of a drawing that was ordered and began to be drawn, each of its strokes whole and by its number; where its light would stand it is dark before.
@@ -63,8 +62,7 @@ pub fn schedule_rest(drawing: Drawing, driving: &Driving) -> Result<Schedule, Fa
 /// # Errors
 /// As of [`schedule_rest`].
 pub fn schedule_whole(drawing: Drawing, driving: &Driving) -> Result<Schedule, Failure> {
-    let cost = TravelTime::new(&driving.machine, &driving.request);
-    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), Some(May::Rest), driving)
+    in_its_order(drawing, Some(May::Rest), driving)
 }
 
 /// Times strokes in the order that they have, and none of them in parts: what knows them by their numbers goes on doing so.
@@ -72,8 +70,12 @@ pub fn schedule_whole(drawing: Drawing, driving: &Driving) -> Result<Schedule, F
 /// # Errors
 /// As of [`schedule_rest`]; `standing-light` where the light would stand.
 pub fn schedule_as_it_is(drawing: Drawing, driving: &Driving) -> Result<Schedule, Failure> {
+    in_its_order(drawing, None, driving)
+}
+
+fn in_its_order(drawing: Drawing, may: Option<May>, driving: &Driving) -> Result<Schedule, Failure> {
     let cost = TravelTime::new(&driving.machine, &driving.request);
-    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), None, driving)
+    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), may, driving)
 }
 
 /// Times strokes. Where the light would stand it is spread in time, if that is enough.

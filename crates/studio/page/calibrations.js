@@ -7,7 +7,7 @@ import { json, post } from './api.js'
  * @typedef {import('./api.js').Calibration} Calibration
  * @typedef {import('./api.js').Flags} Flags
  * @typedef {{ id: string, name: string, simulated: boolean }} Camera
- * @typedef {{ number: number, image: string, width_px: number, height_px: number, exposed: 'dark' | 'well' | 'bright', markers: { id: number, corners_px: [number, number][] }[], pages: { page: number, board: string, markers: number, of: number }[], calibration: { rms_px: number | null, holds: boolean } | null, remarks: string[] }} Sight
+ * @typedef {{ number: number, image: string, width_px: number, height_px: number, exposed: 'dark' | 'well' | 'bright', markers: { id: number, page: number | null, corners_px: [number, number][] }[], pages: { page: number, board: string, markers: number, of: number }[], calibration: { rms_px: number | null, holds: boolean } | null, remarks: string[] }} Sight
  * @typedef {{ command: string, answer: any, words: string, remarks: string[], calibration: Calibration, replaced: string | null }} Calibrated
  */
 

@@ -197,9 +197,8 @@ export class Cameras {
     context.drawImage(image, 0, 0, canvas.width, canvas.height)
     const scale = canvas.width / sight.width_px
     context.lineWidth = Math.max(1.5, 1.5 * ratio)
-    for (const { id, corners_px } of sight.markers) {
-      const page = sight.pages.length ? Math.floor(id >= 480 ? (id - 480) / 4 : id / 20) : 0
-      context.strokeStyle = PAGE_COLOURS[page % PAGE_COLOURS.length]
+    for (const { page, corners_px } of sight.markers) {
+      context.strokeStyle = PAGE_COLOURS[((page ?? 1) - 1) % PAGE_COLOURS.length]
       context.beginPath()
       for (const [x, y] of corners_px) context.lineTo(x * scale, y * scale)
       context.closePath()

@@ -11,7 +11,7 @@ use tracelight_task::Failure;
 
 use crate::desk::Desk;
 use crate::flags::{named_values, typed};
-use crate::folder::{Folder, Kind};
+use crate::folder::Kind;
 use crate::names::{KIND, is_own_name};
 use crate::tasks::{AtLast, Work, failure_json};
 
@@ -46,7 +46,7 @@ enum Of {
 /// Most images of a lens.
 const MOST_PICTURES: usize = 40;
 /// Flags of pages of markers.
-const PRINTED: [&str; 4] = ["paper", "board", "pages", "first"];
+const PRINTED: [&str; 2] = ["paper", "board"];
 
 impl Of {
     /// The command of `calibrate`.
@@ -127,11 +127,7 @@ impl Desk {
             None => {}
         }
         for id in pictures {
-            let missing = || {
-                let message = format!("there is no picture {id:?} in the studio's folder");
-                Failure::usage("unreadable", message)
-            };
-            command.push(self.folder.picture(id).ok_or_else(missing)?.to_string_lossy().into_owned());
+            command.push(self.folder.picture_path(id)?);
         }
         Ok(command)
     }
@@ -146,7 +142,7 @@ impl Desk {
         let kind = wanted.of.kind();
         let _last = AtLast(Arc::clone(&work));
         self.begin_experiment(&work);
-        let made = self.folder.calibrated(work.id, "toml").to_string_lossy().into_owned();
+        let made = self.folder.moment("calibration", work.id, ".toml").to_string_lossy().into_owned();
         command.push(format!("--output={made}"));
         let done = self.program.perform(
             &[&command[..], &["--json".to_owned()]].concat(),
@@ -225,7 +221,7 @@ impl Desk {
     pub(crate) fn printed(&self, flags: &Map<String, Value>) -> Result<Bytes, Failure> {
         let work = self.work();
         let _last = AtLast(Arc::clone(&work));
-        let made = self.folder.calibrated(work.id, "pdf").to_string_lossy().into_owned();
+        let made = self.folder.moment("pages", work.id, ".pdf").to_string_lossy().into_owned();
         let mut command = vec!["calibrate".to_owned(), "sheet".to_owned(), format!("--output={made}")];
         command.extend(named_values(flags, |flag| PRINTED.contains(&flag), &self.names())?);
         command.push("--json".to_owned());
@@ -234,12 +230,5 @@ impl Desk {
         // what cannot be removed is written over another time
         let _ = files::remove_read(std::path::Path::new(&made));
         Ok(Bytes::from(done?))
-    }
-}
-
-impl Folder {
-    /// A place for a file that is made, of this process alone.
-    fn calibrated(&self, number: u64, ending: &str) -> std::path::PathBuf {
-        self.dir().join(format!(".calibration-{}-{number}.{ending}", std::process::id()))
     }
 }

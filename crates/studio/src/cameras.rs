@@ -25,12 +25,7 @@ impl Desk {
             return Ok(SIMULATED.to_owned());
         }
         if let Some(picture) = id.strip_prefix(SIMULATED).and_then(|rest| rest.strip_prefix(':')) {
-            let missing = || {
-                let message = format!("there is no picture {picture:?} in the studio's folder");
-                Failure::usage("unreadable", message)
-            };
-            let path = self.folder.picture(picture).ok_or_else(missing)?;
-            return Ok(format!("{SIMULATED}:{}", path.to_string_lossy()));
+            return Ok(format!("{SIMULATED}:{}", self.folder.picture_path(picture)?));
         }
         let all = self.program.cameras();
         let found = all.iter().find(|camera| camera.id == id).map(|camera| camera.source.clone());

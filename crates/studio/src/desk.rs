@@ -13,8 +13,7 @@ use tracelight_task::Failure;
 use crate::answers::json_of;
 use crate::devices::Caller;
 use crate::flags::{Which, arguments, draws_all, mode_of, typed};
-use crate::folder::Kind;
-use crate::folder::{Folder, no_run};
+use crate::folder::{Folder, Kind, no_run};
 use crate::live::Live;
 use crate::names::Names;
 use crate::points::{self, Drawn};
@@ -177,11 +176,7 @@ impl Desk {
         if let Some(camera) = as_camera(picture) {
             return Ok(format!("--camera={}", self.source(camera)?));
         }
-        let missing = || {
-            let message = format!("there is no picture {picture:?} in the studio's folder");
-            Failure::usage("unreadable", message)
-        };
-        Ok(self.folder.picture(picture).ok_or_else(missing)?.to_string_lossy().into_owned())
+        self.folder.picture_path(picture)
     }
 
     /// Takes note of what a page asks for, by the number that it gives its wishes, and ends what it asked for before; a page without a name asks for everything at once.
@@ -229,7 +224,7 @@ impl Desk {
         let work = Arc::clone(&last.0);
         // somebody may have wished for another while this one waited
         work.stop.check()?;
-        let table = self.folder.table(work.id);
+        let table = self.folder.moment("plan", work.id, ".csv");
         let out = ["-o".to_owned(), table.to_string_lossy().into_owned(), "--json".to_owned()];
         let all: Vec<String> = command.iter().cloned().chain(out).collect();
         let planned = self.program.perform(&all, None, (&*work, &work.stop));

@@ -144,19 +144,9 @@ impl Folder {
         std::io::Write::write_all(&mut fs::File::create_new(self.pictures().join(id))?, bytes)
     }
 
-    /// A place for the table of a plan, of this process alone.
-    pub(crate) fn table(&self, number: u64) -> PathBuf {
-        self.dir.join(format!(".plan-{}-{number}.csv", std::process::id()))
-    }
-
-    /// A place for a rig file that is looked at, of this process alone.
-    pub(crate) fn draft(&self, number: u64) -> PathBuf {
-        self.dir.join(format!(".rig-{}-{number}.toml", std::process::id()))
-    }
-
-    /// A place for the plot of an experiment, of this process alone.
-    pub(crate) fn plot(&self, number: u64) -> PathBuf {
-        self.dir.join(format!(".lab-{}-{number}.svg", std::process::id()))
+    /// A place for what lies there for a moment, of this process alone: a plan's table, a draft, what a command makes; `ending` as a file's name has it, empty of a folder.
+    pub(crate) fn moment(&self, what: &str, number: u64, ending: &str) -> PathBuf {
+        self.dir.join(format!(".{what}-{}-{number}{ending}", std::process::id()))
     }
 
     /// Where a picture lies; `None` where there is none of that id.
@@ -164,6 +154,17 @@ impl Folder {
         let (stem, kind) = parted(id)?;
         let path = self.pictures().join(id);
         (id == format!("{stem}.{kind}") && path.is_file()).then_some(path)
+    }
+
+    /// Where a picture lies.
+    ///
+    /// # Errors
+    /// `unreadable` where there is none of that id.
+    pub(crate) fn picture_path(&self, id: &str) -> Result<String, Failure> {
+        let path = self.picture(id).map(|path| path.to_string_lossy().into_owned());
+        let missing =
+            || Failure::usage("unreadable", format!("there is no picture {id:?} in the studio's folder"));
+        path.ok_or_else(missing)
     }
 
     /// The id of a picture by its path; `None` of one that lies elsewhere, or is gone.

@@ -219,7 +219,8 @@ impl Desk {
         let kind = asked.kind()?;
         let _last = AtLast(Arc::clone(&work));
         self.begin_experiment(&work);
-        let (plot, made) = (self.folder.plot(work.id), self.folder.made(work.id));
+        let (plot, made) =
+            (self.folder.moment("lab", work.id, ".svg"), self.folder.moment("lab", work.id, ""));
         let at = 1 + kind.name.split(' ').count();
         let with = |more: &[&str]| -> Vec<String> {
             let more = more.iter().map(|&word| word.to_owned());
@@ -258,11 +259,6 @@ impl Desk {
 }
 
 impl Folder {
-    /// A place for the folder of an experiment, of this process alone.
-    fn made(&self, number: u64) -> PathBuf {
-        self.dir().join(format!(".lab-{}-{number}", std::process::id()))
-    }
-
     fn lessons(&self) -> PathBuf {
         self.dir().join("lessons.json")
     }

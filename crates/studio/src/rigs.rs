@@ -119,7 +119,7 @@ impl Desk {
     /// Reads a text as a rig file of that name; what is to be remarked.
     fn checked(&self, name: &str, text: &str) -> Result<Vec<String>, Failure> {
         let work = self.work();
-        let path = self.folder.draft(work.id).to_string_lossy().into_owned();
+        let path = self.folder.moment("rig", work.id, ".toml").to_string_lossy().into_owned();
         files::write(&path, text)?;
         let command = ["rigs", "show", &path, "--json"].map(str::to_owned);
         let read = self.program.perform(&command, None, (&*work, &work.stop));
