@@ -1,8 +1,8 @@
 //! What happens every tick.
 
-use tracelight_control::{Config, Controller, State};
+use tracelight_control::{AxisConfig, Config, Controller, State};
 use tracelight_rig::wire::{Ask, Configured, Order, Row, RowBytes, as_told, is_before};
-use tracelight_rig::{Actuation, Command, FaultRecord, Joint, Phase, Sensed, Telemetry};
+use tracelight_rig::{Actuation, Command, FaultRecord, Joint, PanTilt, Phase, Sensed, Telemetry};
 
 use crate::configuration::{MOST_CONFIGURATION, read_configuration, write_configuration};
 use crate::start::Start;
@@ -105,6 +105,13 @@ impl<const SEGMENTS: usize> Machine<SEGMENTS> {
     /// What the controller remembers; `None` without a configuration.
     pub fn state(&self) -> Option<&State<SEGMENTS>> {
         self.running.as_ref().map(|(_, state)| state)
+    }
+
+    /// Volts that are all that an amplifier gives, as it was configured; `None` before that.
+    pub fn limit_v(&self) -> Option<PanTilt<f32>> {
+        // what a law asks for comes after the dead band
+        let most = |axis: AxisConfig| axis.limit_v + axis.dead_band_v;
+        self.running.as_ref().map(|(controller, _)| controller.config().axes.map(most))
     }
 
     /// Turns a bit of the configuration in force into the other, as a memory fault does: word, counted from 0, and bit. False if there is none, or if that

@@ -37,21 +37,26 @@ pub struct Identity {
 impl Identity {
     /// Of a board that is emulated.
     pub fn emulated(capabilities: Capabilities, reset: Reset) -> Self {
-        let number = |text: &str| text.parse().unwrap_or_default();
-        let firmware = [
-            number(env!("CARGO_PKG_VERSION_MAJOR")),
-            number(env!("CARGO_PKG_VERSION_MINOR")),
-            number(env!("CARGO_PKG_VERSION_PATCH")),
-        ];
-        Self {
-            firmware,
-            source: [0; 8],
-            board: Greeting::EMULATED,
-            id: Greeting::EMULATED_ID,
-            capabilities,
-            reset,
-        }
+        let firmware = version(env!("CARGO_PKG_VERSION"));
+        let (board, id) = (Greeting::EMULATED, Greeting::EMULATED_ID);
+        Self { firmware, source: [0; 8], board, id, capabilities, reset }
     }
+
+    /// The digits of its number, 16 of them.
+    pub fn serial(&self) -> [u8; 16] {
+        let mut digits = [b'0'; 16];
+        let halves = self.id.into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
+        for (place, half) in digits.iter_mut().zip(halves) {
+            *place = if half < 10 { b'0' + half } else { b'a' + half - 10 };
+        }
+        digits
+    }
+}
+
+/// The numbers of a version such as `0.1.0`; 0 for what is none.
+pub fn version(text: &str) -> [u8; 3] {
+    let mut numbers = text.split('.').map(|number| number.parse().unwrap_or_default());
+    [(); 3].map(|()| numbers.next().unwrap_or_default())
 }
 
 /// The board's side of the wire.
@@ -64,6 +69,8 @@ pub struct Server<const SEGMENTS: usize, const ROWS: usize> {
     /// The host that has greeted speaks another version.
     is_other: bool,
     orders: Orders,
+    /// Orders that were given away and wait elsewhere.
+    waiting: usize,
     /// Number of the order that comes next.
     wanted: u16,
     inbox: Inbox,
@@ -73,10 +80,13 @@ pub struct Server<const SEGMENTS: usize, const ROWS: usize> {
     upload: [u8; MOST_CONFIGURATION],
     /// Checksum of the one in force.
     configuration: Option<u32>,
+    /// Checksum of the last one that was sent.
+    committed: u32,
     /// What was answered when that came, in this connection.
     answered: Option<Configured>,
-    /// One will be from the next tick on.
-    is_coming: bool,
+    /// How many are to begin with in the next ticks, and whether somebody waits for the answer to the last of them.
+    coming: u8,
+    is_awaited: bool,
     rows: Ring<ROWS>,
     /// Tick of the row that is told next.
     untold: u32,
@@ -114,13 +124,16 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
             session: None,
             is_other: false,
             orders: Orders::new(),
+            waiting: 0,
             wanted: 0,
             inbox: Inbox { heard: false, disarm: None },
             new: None,
             upload: [0; MOST_CONFIGURATION],
             configuration: None,
+            committed: 0,
             answered: None,
-            is_coming: false,
+            coming: 0,
+            is_awaited: false,
             rows: Ring::new(),
             untold: 0,
             again: None,
@@ -138,7 +151,7 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
 
     /// Whether a configuration is in force from the next tick on.
     pub const fn is_configuring(&self) -> bool {
-        self.is_coming
+        self.coming > 0
     }
 
     /// Stretches of bytes that were no packet.
@@ -165,10 +178,8 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
             ToBoard::Disarm { before, number } if is_ours => {
                 self.inbox.disarm = Some(Disarm { before, number })
             }
-            // whoever says it: what has come and waits lights nothing
-            ToBoard::Disarm { .. } => {
-                self.inbox.disarm.get_or_insert(Disarm { before: self.wanted, number: self.disarm });
-            }
+            // whoever says it
+            ToBoard::Disarm { .. } => self.hang_up(),
             _ if !is_ours => {}
             ToBoard::Configure { offset, bytes } => self.keep(offset, bytes),
             ToBoard::Commit { length, crc } => {
@@ -197,6 +208,21 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
         }
     }
 
+    /// Number of the connection; `None` before a host has greeted.
+    pub const fn session(&self) -> Option<u32> {
+        self.session
+    }
+
+    /// Nobody is there any more, or a stranger wants it dark: what has come and waits lights nothing.
+    pub fn hang_up(&mut self) {
+        self.inbox.disarm.get_or_insert(Disarm { before: self.wanted, number: self.disarm });
+    }
+
+    /// So many orders that were given away wait elsewhere, and take room when their turn comes.
+    pub(crate) const fn waits(&mut self, waiting: usize) {
+        self.waiting = waiting;
+    }
+
     /// Begins a connection, dark: what an earlier one left behind is nobody's.
     fn greet(&mut self, version: (u8, u8), session: u32) {
         self.orders = Orders::new();
@@ -204,7 +230,7 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
         self.inbox = Inbox { disarm: Some(Disarm { before: 0, number: 0 }), ..Inbox::default() };
         (self.untold, self.again) = (self.rows.end(), None);
         self.due = Due { greeting: true, configured: None, pong: None };
-        (self.is_coming, self.answered, self.disarm) = (false, None, 0);
+        (self.is_awaited, self.answered, self.disarm) = (false, None, 0);
         (self.session, self.is_other) = (Some(session), version.0 != VERSION.0);
         if let Some((_, is_seen)) = &mut self.fault {
             *is_seen = false;
@@ -234,14 +260,16 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
             self.due.configured = Some(Ok(answered));
             return Ok(());
         }
+        if self.is_awaited && self.committed == crc {
+            // it was sent again before a tick could begin with it, which is to do so once
+            return Ok(());
+        }
         let config = read_configuration(bytes)?;
-        self.is_coming = true;
-        self.new = Some(NewConfiguration {
-            config,
-            is_absolute: self.identity.capabilities.absolute,
-            crc,
-            law: law_hash(&config),
-        });
+        let is_absolute = self.identity.capabilities.absolute;
+        let new = NewConfiguration { config, is_absolute, crc, law: law_hash(&config) };
+        // one that no tick was given yet never begins
+        self.coming += u8::from(self.new.replace(new).is_none());
+        (self.is_awaited, self.committed) = (true, crc);
         Ok(())
     }
 
@@ -292,8 +320,9 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
 
     fn begin(&mut self, configured: Configured) {
         self.configuration = Some(configured.crc);
-        // the host that sent it may have greeted anew meanwhile, and asks again then
-        if core::mem::take(&mut self.is_coming) {
+        self.coming = self.coming.saturating_sub(1);
+        // the host that sent it may have greeted anew meanwhile, and asks again then: that is another beginning
+        if self.coming == 0 && core::mem::take(&mut self.is_awaited) {
             self.answered = Some(configured);
             self.due.configured = Some(Ok(configured));
         }
@@ -364,7 +393,7 @@ impl<const SEGMENTS: usize, const ROWS: usize> Server<SEGMENTS, ROWS> {
 
     /// Rows that are to be told again, then those that were not told yet. A host that reads too slowly finds a gap.
     fn rows(&mut self, connection: u8, out: &mut [u8; MOST_PACKET]) -> usize {
-        let waiting = u16::try_from(self.orders.len()).unwrap_or(u16::MAX);
+        let waiting = u16::try_from(self.orders.len() + self.waiting).unwrap_or(u16::MAX);
         let header = RowsHeader {
             first_tick: self.untold,
             wanted: self.wanted,

@@ -111,9 +111,14 @@ impl Encoder {
     }
 
     /// Follows the joint from one angle to the next within a substep. `end_age_ticks` is how long before the
-    /// tick's end the substep ends, `length_ticks` how long it is.
+    /// tick's end the substep ends, `length_ticks` how long it is. Every edge is told: the count after it, and its age at the tick's end, ticks.
     #[inline]
-    pub(crate) fn follow(&mut self, from_rad: f64, to_rad: f64, end_age_ticks: f64, length_ticks: f64) {
+    pub(crate) fn follow(
+        &mut self,
+        (from_rad, to_rad): (f64, f64),
+        (end_age_ticks, length_ticks): (f64, f64),
+        mut seen: impl FnMut(i32, f64),
+    ) {
         const MOST_COUNTS: f64 = 1e3;
         let (from_rad, to_rad) = (self.on_disc(from_rad), self.on_disc(to_rad));
         let way = (to_rad - from_rad).abs();
@@ -122,22 +127,28 @@ impl Encoder {
             self.count = (to_rad / self.count_rad + 0.5).floor() as i32;
             return;
         }
+        let age = |edge_rad: f64| {
+            let left = (to_rad - edge_rad) / (to_rad - from_rad);
+            end_age_ticks + left.clamp(0.0, 1.0) * length_ticks
+        };
         while to_rad >= self.lower_edge_rad(self.count + 1) {
             self.count += 1;
             self.missed += i32::from(self.misses());
-            self.stamp(self.lower_edge_rad(self.count), from_rad, to_rad, end_age_ticks, length_ticks);
+            let age = age(self.lower_edge_rad(self.count));
+            self.stamp(age);
+            seen(self.count - self.missed, age);
         }
         while to_rad < self.lower_edge_rad(self.count) {
-            self.stamp(self.lower_edge_rad(self.count), from_rad, to_rad, end_age_ticks, length_ticks);
+            let age = age(self.lower_edge_rad(self.count));
             self.count -= 1;
             self.missed -= i32::from(self.misses());
+            self.stamp(age);
+            seen(self.count - self.missed, age);
         }
     }
 
-    fn stamp(&mut self, edge_rad: f64, from_rad: f64, to_rad: f64, end_age_ticks: f64, length_ticks: f64) {
+    fn stamp(&mut self, age: f64) {
         if self.edge_stamps {
-            let left = (to_rad - edge_rad) / (to_rad - from_rad);
-            let age = end_age_ticks + left.clamp(0.0, 1.0) * length_ticks;
             // a stamp is a counter's value: these are what a wire carries, and finer than any timer's
             let most = f64::from(STAMPS_A_TICK);
             let steps = (age * most).floor().clamp(0.0, LAST_STAMP.into());
@@ -158,13 +169,13 @@ mod tests {
     fn an_edge_is_stamped_when_it_is_crossed() {
         let mut encoder = Encoder::new(1.0, true, [0.0; 4], 0.0);
         encoder.begin_tick();
-        encoder.follow(0.0, 1.0, 0.5, 0.5); // crosses 0.5 halfway through the first half of the tick
+        encoder.follow((0.0, 1.0), (0.5, 0.5), |count, age| assert_eq!((count, age), (1, 0.75))); // crosses 0.5 halfway through the first half of the tick
         assert_eq!(encoder.measurement(), Measurement { count: 1, edge_age_ticks: Some(0.75) });
         encoder.begin_tick();
-        encoder.follow(1.0, 0.4, 0.0, 1.0); // back over it
+        encoder.follow((1.0, 0.4), (0.0, 1.0), |count, _| assert_eq!(count, 0)); // back over it
         assert_eq!(encoder.measurement().count, 0);
         encoder.begin_tick();
-        encoder.follow(0.4, 0.3, 0.0, 1.0);
+        encoder.follow((0.4, 0.3), (0.0, 1.0), |_, _| unreachable!());
         assert_eq!(encoder.measurement().edge_age_ticks, None);
     }
 
@@ -172,7 +183,7 @@ mod tests {
     fn misplaced_edges_move_the_count() {
         let encoder = |angle| {
             let mut e = Encoder::new(1.0, false, [0.0, 0.2, 0.0, 0.0], 0.0);
-            e.follow(0.0, angle, 0.0, 1.0);
+            e.follow((0.0, angle), (0.0, 1.0), |_, _| {});
             e.measurement()
         };
         assert_eq!(encoder(0.6).count, 0);

@@ -23,6 +23,7 @@ mod plant;
 mod servo_joint;
 mod step;
 mod stepper_joint;
+mod stops;
 mod teeth;
 mod wear;
 

@@ -10,6 +10,7 @@ use crate::foot::Foot;
 use crate::gain::{Gain, Weakening};
 use crate::light::{Relay, play};
 use crate::mechanism::Mechanism;
+use crate::stops::Stops;
 use crate::teeth::{LooseBelt, Teeth};
 use crate::{JointState, PlantConfig, Wear};
 
@@ -18,10 +19,6 @@ use crate::{JointState, PlantConfig, Wear};
 const SUBSTEPS: u32 = 10;
 /// Twice the mains frequency: what a rectifier leaves of it.
 const SUPPLY_HZ: f64 = 100.0;
-/// Natural frequency of a joint on its end stop, rad/s.
-const STOP_RAD_S: f64 = 400.0;
-/// Damping of that end stop, as a share of critical damping.
-const STOP_DAMPING: f64 = 0.3;
 /// How far from straight ahead cables may hang at rest, rad.
 const CABLE_REST_RAD: f64 = 0.3;
 
@@ -58,27 +55,6 @@ pub struct Plant {
     /// How much longer the next tick lasts, s.
     held_up_s: f64,
     dice: Dice,
-}
-
-/// Where a joint ends: a stiff spring either way, with a damper that only pushes.
-#[derive(Clone, Copy, Debug)]
-struct Stops {
-    at_rad: (f64, f64),
-    inertia_kg_m2: f64,
-}
-
-impl Stops {
-    /// On a joint at an angle with a speed, N m.
-    fn torque_nm(&self, angle_rad: f64, rate_rad_s: f64) -> f64 {
-        let (lower, upper) = self.at_rad;
-        let into_rad = angle_rad - angle_rad.clamp(lower, upper);
-        if into_rad == 0.0 {
-            return 0.0;
-        }
-        let spring = STOP_RAD_S * STOP_RAD_S * into_rad;
-        let back = -self.inertia_kg_m2 * (spring + 2.0 * STOP_DAMPING * STOP_RAD_S * rate_rad_s);
-        if into_rad > 0.0 { back.min(0.0) } else { back.max(0.0) }
-    }
 }
 
 impl Plant {
@@ -300,7 +276,12 @@ impl Plant {
     }
 
     /// A part of a tick that lasts `tick_s`.
-    fn substep(&mut self, asked_nm: PanTilt<f64>, tick_s: f64, number: u32) {
+    fn substep(
+        &mut self,
+        asked_nm: PanTilt<f64>,
+        (tick_s, number): (f64, u32),
+        mut seen: impl FnMut(Joint, i32, f64),
+    ) {
         const LENGTH: f64 = 1.0 / SUBSTEPS as f64;
         let (length_s, ticks) = (LENGTH * tick_s, tick_s / TICK_F64_S);
         let from = self.state.angle_rad;
@@ -322,7 +303,8 @@ impl Plant {
         let to = self.state.angle_rad;
         let end_age = 1.0 - f64::from(number + 1) * LENGTH;
         for joint in Joint::BOTH {
-            self.encoders[joint].follow(from[joint], to[joint], end_age * ticks, LENGTH * ticks);
+            let told = |count, age| seen(joint, count, age);
+            self.encoders[joint].follow((from[joint], to[joint]), (end_age * ticks, LENGTH * ticks), told);
             self.beam_rad[joint] = play(self.beam_rad[joint], carried[joint], self.wear.backlash_rad);
         }
         self.time_s += length_s;
@@ -346,6 +328,42 @@ impl Plant {
         }
     }
 
+    fn begin_tick(&mut self) {
+        for joint in Joint::BOTH {
+            self.encoders[joint].begin_tick();
+        }
+        self.foot.begin_tick();
+    }
+
+    /// A part of a tick in which this is done, and what its encoders say in it: joint, count, and ticks until the tick's end.
+    fn part(
+        &mut self,
+        actuation: &Actuation,
+        (lasts_s, number): (f64, u32),
+        seen: impl FnMut(Joint, i32, f64),
+    ) {
+        let asked = PanTilt::from_fn(|j| {
+            self.motors[j].beyond_v(f64::from(actuation.command_v[j])) * self.torque_nm_per_v[j]
+        });
+        self.substep(asked, (lasts_s, number), seen);
+        self.switch(actuation, lasts_s / f64::from(SUBSTEPS));
+    }
+
+    /// Some time passes for whoever sees lines instead of ticks, of a tenth of a millisecond at most: this is done meanwhile. Told are the counts of each joint's encoder, in
+    /// turn, each with how long after the beginning it was reached, s. Returned is what the head senses at the end.
+    pub fn pass(
+        &mut self,
+        actuation: &Actuation,
+        lasts_s: f64,
+        mut seen: impl FnMut(Joint, i32, f64),
+    ) -> Sensed {
+        self.begin_tick();
+        let lasts_s = lasts_s.min(TICK_F64_S / f64::from(SUBSTEPS));
+        let seen = |joint, count, age| seen(joint, count, lasts_s - age * TICK_F64_S);
+        self.part(actuation, (f64::from(SUBSTEPS) * lasts_s, SUBSTEPS - 1), seen);
+        self.sensed(TICK_F64_S)
+    }
+
     /// How long this tick lasts, s: ticks come early or late, each by itself.
     fn tick_s(&mut self) -> f64 {
         let proper_s = TICK_F64_S + std::mem::take(&mut self.held_up_s);
@@ -359,17 +377,10 @@ impl Plant {
 
 impl Head for Plant {
     fn exchange(&mut self, actuation: &Actuation) -> Sensed {
-        let asked = PanTilt::from_fn(|j| {
-            self.motors[j].beyond_v(f64::from(actuation.command_v[j])) * self.torque_nm_per_v[j]
-        });
-        for joint in Joint::BOTH {
-            self.encoders[joint].begin_tick();
-        }
-        self.foot.begin_tick();
+        self.begin_tick();
         let lasts_s = self.tick_s();
         for number in 0..SUBSTEPS {
-            self.substep(asked, lasts_s, number);
-            self.switch(actuation, lasts_s / f64::from(SUBSTEPS));
+            self.part(actuation, (lasts_s, number), |_, _, _| {});
         }
         self.sensed(lasts_s)
     }

@@ -65,12 +65,27 @@ impl Device {
         while device.host.twin().is_none_or(|twin| twin.state().is_none()) {
             device.stop.check()?;
             device.pump();
-            device.host.board().map_or(Ok(()), &mut meet)?;
+            device
+                .host
+                .board()
+                .map_or(Ok(()), |board| device.refuse_double(board).and_then(|()| meet(board)))?;
             if let Some(failure) = device.failure() {
                 return Err(failure);
             }
         }
         Ok(device)
+    }
+
+    /// A test double may be at a pseudo-terminal only.
+    fn refuse_double(&self, board: &Greeting) -> Result<(), Failure> {
+        if board.board != Greeting::DOUBLE || self.port.as_ref().is_none_or(Port::is_pseudo_terminal) {
+            return Ok(());
+        }
+        let at = self.path.display();
+        let message = format!(
+            "{at}: this board runs the test double of the firmware, which is for an emulator: its processor is too slow to hold a head. Flash a Pico 2 with tracelight-pico-2.uf2"
+        );
+        Err(Failure::failed("board", message))
     }
 
     /// Waits, dark, until light may be let out: whoever drove the head before may have had it anywhere. A head that has been dark for some seconds is not waited for.

@@ -20,7 +20,11 @@ pub struct Examined {
 }
 
 /// Kinds of boards, by their numbers.
-const KINDS: [(u16, &str); 2] = [(Greeting::EMULATED, "emulated board"), (Greeting::PICO_2, "Pico 2")];
+const KINDS: [(u16, &str); 3] = [
+    (Greeting::EMULATED, "emulated board"),
+    (Greeting::PICO_2, "Pico 2"),
+    (Greeting::DOUBLE, "test double of a Pico 2, emulated"),
+];
 
 fn kind(board: u16) -> String {
     let known = KINDS.into_iter().find(|(number, _)| *number == board);

@@ -81,6 +81,14 @@ impl Port {
         tcgetattr(&self.file).is_ok()
     }
 
+    /// Whether another program of this computer is at its other end, and no cable.
+    #[must_use]
+    pub fn is_pseudo_terminal(&self) -> bool {
+        // a program that shares a port answers at a socket: what it has is told by its path too
+        let path = self.path.canonicalize().unwrap_or_default();
+        ["/dev/pts/", "/dev/ttys"].iter().any(|begin| path.to_string_lossy().starts_with(begin))
+    }
+
     /// Where it is.
     #[must_use]
     pub fn path(&self) -> &Path {

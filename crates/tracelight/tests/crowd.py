@@ -125,13 +125,18 @@ def attended(studio, seconds, readers, stalled):
                 mine.say({"wish": "go-on"})
             elif event["state"] == "done":
                 break
-    mine.say({"wish": "end"})
-    while not studio.ask("/jobs/current")["job"]["over"]:
-        time.sleep(0.1)
+    ended(studio, mine)
     for line in lines + [mine]:
         line.socket.close()
     assert not readers or min(heard) > 10, heard
     return round(1000 * told["t_s"]), told["late_ticks"], told["latest_ms"]
+
+
+def ended(studio, mine):
+    """Ends a run, and waits until it is over."""
+    mine.say({"wish": "end"})
+    while not studio.ask("/jobs/current")["job"]["over"]:
+        time.sleep(0.1)
 
 
 def stopped(studio, trials):
@@ -162,7 +167,7 @@ def stopped(studio, trials):
             else:
                 wished = now
                 mine.say({"wish": "arm"})
-    mine.say({"wish": "end"})
+    ended(studio, mine)
     mine.socket.close()
     return sorted(took)
 

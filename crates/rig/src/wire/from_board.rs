@@ -68,17 +68,19 @@ impl Greeting {
     pub const EMULATED: u16 = 0;
     /// Kind of a Raspberry Pi Pico 2.
     pub const PICO_2: u16 = 1;
+    /// Kind of a test double of a Pico 2, for an emulator: its processor is too slow for the law, and a host drives it at a pseudo-terminal only.
+    pub const DOUBLE: u16 = 2;
     /// Number of boards that are emulated, of whatever kind they say that they are.
     pub const EMULATED_ID: [u8; 8] = *b"emulated";
 
     /// Whether board and head are emulated: nothing moves, no light falls.
     pub fn is_emulated(&self) -> bool {
-        self.board == Self::EMULATED || self.id == Self::EMULATED_ID
+        matches!(self.board, Self::EMULATED | Self::DOUBLE) || self.id == Self::EMULATED_ID
     }
 
     /// Whether a person must arm its head: one that does not say that it is emulated, and one that is there to practise with.
     pub const fn wants_a_person(&self) -> bool {
-        self.board != Self::EMULATED
+        !matches!(self.board, Self::EMULATED | Self::DOUBLE)
     }
 }
 

@@ -51,7 +51,7 @@ impl SimulatedRig {
     /// Gives it a board whose host is another program.
     pub fn served(self) -> ServedRig {
         let board = Box::new(Firmware::new(Identity::emulated(self.capabilities(), Reset::PowerUp)));
-        ServedRig { rig: self, board }
+        ServedRig { rig: self, board, is_held: false }
     }
 
     /// The host of a head behind a wire.
@@ -124,6 +124,8 @@ impl SimulatedRig {
 pub struct ServedRig {
     rig: SimulatedRig,
     board: Box<Firmware>,
+    /// Somebody holds it until its motors do.
+    is_held: bool,
 }
 
 impl ServedRig {
@@ -135,12 +137,20 @@ impl ServedRig {
         Self { board: Box::new(Firmware::new(identity)), ..self }
     }
 
+    /// Has somebody hold the head where it is until its board is configured.
+    #[must_use]
+    pub fn held(self) -> Self {
+        Self { is_held: true, ..self }
+    }
+
     /// A millisecond in which these bytes came; what the board says, if it may.
     pub fn pass(&mut self, came: &[u8], may_say: bool) -> Vec<u8> {
         self.board.take(came, LAST_US);
         let actuation = self.board.tick(&self.rig.sensed);
-        let open_loop = self.board.machine().state().map(open_loop).unwrap_or_default();
-        self.rig.exchange(&actuation, &open_loop);
+        let state = self.board.machine().state();
+        if state.is_some() || !self.is_held {
+            self.rig.exchange(&actuation, &state.map(open_loop).unwrap_or_default());
+        }
         if may_say { said(&mut self.board) } else { Vec::new() }
     }
 

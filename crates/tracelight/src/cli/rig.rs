@@ -51,6 +51,9 @@ struct ServeArgs {
     /// The board says that it is a Pico 2, to practise with: whoever drives its head asks a person to arm
     #[arg(long)]
     sim_real: bool,
+    /// Somebody holds the head where it is until its motors do; it sinks otherwise
+    #[arg(long)]
+    sim_held: bool,
     #[command(flatten)]
     voice: Voice,
 }
@@ -92,6 +95,7 @@ fn run_serve(args: &ServeArgs, stop: &Stop) -> Result<Answer, Failure> {
     let put_up = if args.sim_unhomed { left } else { SimulatedRig::new };
     let rig = put_up(&config, HeadPose::square_on(DEFAULT_DISTANCE_M), args.seed).served();
     let rig = if args.sim_real { rig.posing_as(Greeting::PICO_2) } else { rig };
+    let rig = if args.sim_held { rig.held() } else { rig };
     let serving = Serving { rig, name: &config.name, at: &args.pty, lasts_s: args.lasts_s };
     let served = watched(args.voice, stop, |task| serve(serving, task))?;
     Ok(Answer::new(served.text(), served.json().to_string()))
