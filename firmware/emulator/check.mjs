@@ -4,6 +4,7 @@
 import { Reader } from './rows.mjs'
 
 const TICK_NS = 1e6
+const MOMENT_NS = 100
 const TICKING_SLICE = 7
 const CSR = 0
 const ENABLED = 1
@@ -33,17 +34,22 @@ export class Check {
     this.ticks++
     this.light.push([tick, planTick, ...this.spots[tick]])
     const at = this.began + (tick + 1) * TICK_NS
-    for (const joint of [0, 1]) {
-      const { count, since } = this.head.read(joint, at)
-      const age = at - since
-      if (count !== counts[joint]) this.wrong++
-      // an edge in the moment of the tick belongs to either
-      const isStamped = ages[joint] !== null
-      if (isStamped !== age < TICK_NS) this.missing++
-      else if (isStamped) {
-        this.stamps++
-        this.furthestNs = Math.max(this.furthestNs, Math.abs(ages[joint] * TICK_NS - age))
-      }
+    for (const joint of [0, 1]) this.hold(at, joint, counts[joint], ages[joint])
+  }
+
+  // An edge in the moment of the tick belongs to it or to the next one.
+  hold(at, joint, count, age) {
+    const reads = [at, at - MOMENT_NS, at + MOMENT_NS].map(ns => this.head.read(joint, ns))
+    const { since } = reads.find(read => read.count === count) ?? {}
+    if (since === undefined) {
+      this.wrong++
+      return
+    }
+    const trueNs = at - since
+    if (age === null) this.missing += trueNs < TICK_NS - MOMENT_NS
+    else {
+      this.stamps++
+      this.furthestNs = Math.max(this.furthestNs, Math.abs(age * TICK_NS - trueNs))
     }
   }
 

@@ -14,6 +14,7 @@ const LOOK_NS = 100
 // Time until PIO has told an edge, ns.
 const TOLD_NS = 500
 const PROGRAM = 0x10000100
+const WATCHDOG = 0x40058
 // bytes that wait for the chip
 const ROOM = 400
 
@@ -36,6 +37,13 @@ export class Chip {
     this.said = []
     this.waiting = []
     this.line.onSerialData = bytes => this.said.push(Buffer.from(bytes))
+    // When the watchdog reset it, ns: its pins are let go then, and it stands.
+    this.resetAt = null
+    const watchdog = this.mcu.peripherals[WATCHDOG]
+    watchdog.onWatchdogTrigger = () => {
+      this.resetAt ??= this.clock.nanos
+      watchdog.alarm.enable = false
+    }
     this.settles = this.clock.createAlarm(() => this.pio(this.clock.nanos))
     startWithoutBootRom(this.mcu, PROGRAM)
   }
@@ -46,7 +54,7 @@ export class Chip {
 
   // Whether a pin that the program drives is high.
   isHigh(pin) {
-    return this.mcu.gpio[pin].value === GPIOPinState.High
+    return this.resetAt === null && this.mcu.gpio[pin].value === GPIOPinState.High
   }
 
   // Calls back when a pin changes, with whether it is high.
@@ -97,7 +105,7 @@ export class Chip {
     const { clock, mcu, line, waiting } = this
     const { core } = mcu
     const until = clock.nanos + ns
-    while (clock.nanos < until) {
+    while (clock.nanos < until && this.resetAt === null) {
       while (waiting.length > 0 && line.txFIFO.itemCount < ROOM) line.sendSerialByte(waiting.shift())
       line.fill()
       let left = Math.min(until, mcu.clock.nextAlarm?.nanos ?? until) - clock.nanos
@@ -112,6 +120,7 @@ export class Chip {
       this.passed -= whole
       clock.tick(whole)
     }
+    if (clock.nanos < until) clock.tick(until - clock.nanos)
     return Buffer.concat(this.said.splice(0))
   }
 }

@@ -1,7 +1,5 @@
 // The simulated head behind the pins of the chip.
 
-import { readFileSync } from 'node:fs'
-
 export const PINS = {
   light: 19, gate: 14, enable: 13, amplifiers: 12, heartbeat: 15,
   stop: 16, lid: 17, key: 18, panFault: 20, tiltFault: 21,
@@ -23,13 +21,12 @@ const STEP_RAD_S = 8.75e-3 * Math.PI / 180
 const MOST_KEPT = 4096
 
 export class Head {
-  constructor(chip, module, { seed = 1, gyroscope = false } = {}) {
-    const { exports } = new WebAssembly.Instance(new WebAssembly.Module(readFileSync(module)))
-    Object.assign(this, { chip, plant: exports, kept: [[], []], dead: [false, false], swapped: false, wasOn: false })
-    exports.begin(seed, gyroscope ? 1 : 0)
+  constructor(chip, plant, { seed = 1, gyroscope = false } = {}) {
+    Object.assign(this, { chip, plant, kept: [[], []], cut: [[], []], swapped: [false, false], wasOn: false, isHeld: false })
+    plant.begin(seed, gyroscope ? 1 : 0)
     for (const joint of [0, 1]) {
-      this.kept[joint].push([-Infinity, exports.count(joint)])
-      this.show(joint, exports.count(joint))
+      this.kept[joint].push([-Infinity, plant.count(joint)])
+      this.show(joint, plant.count(joint))
     }
     for (const pin of [PINS.stop, PINS.lid, PINS.key]) chip.set(pin, false)
     for (const pin of [PINS.panFault, PINS.tiltFault]) chip.set(pin, true)
@@ -45,7 +42,7 @@ export class Head {
     const on = chip.isHigh(PINS.amplifiers)
     // somebody holds it straight ahead until its motors do: an arm out of balance would sink
     this.wasOn ||= on
-    if (!this.wasOn) return
+    if (!this.wasOn || this.isHeld) return
     const [pan, tilt] = BRIDGES.map(slice => chip.duties(slice)).map(([a, b]) => on ? a - b : 0)
     const count = plant.pass(pan, tilt, chip.isHigh(PINS.gate), chip.isHigh(PINS.enable), PART_NS / 1e9)
     const edges = new Float64Array(plant.memory.buffer, plant.edges(), 3 * count).slice()
@@ -60,12 +57,20 @@ export class Head {
     const kept = this.kept[joint]
     kept.push([this.chip.now, count])
     if (kept.length > MOST_KEPT) kept.splice(0, MOST_KEPT / 2)
-    if (!this.dead[joint]) this.show(joint, count)
+    this.show(joint, count)
   }
 
   show(joint, count) {
     const lines = LINES[((count % 4) + 4) % 4]
-    ENCODERS[joint].forEach((pin, n) => this.chip.setSeen(pin, lines[this.swapped ? 1 - n : n]))
+    ENCODERS[joint].forEach((pin, n) => {
+      // a line that is cut is pulled up
+      this.chip.setSeen(pin, this.cut[joint].includes(n) || lines[this.swapped[joint] ? 1 - n : n])
+    })
+  }
+
+  // Shows the lines as they are now: one was cut, or both were swapped.
+  showAgain(joint) {
+    this.show(joint, this.kept[joint].at(-1)[1])
   }
 
   // What an encoder read at a time, ns, and when it came to that.

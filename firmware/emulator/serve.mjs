@@ -6,13 +6,14 @@ import { writeFileSync } from 'node:fs'
 import { Check } from './check.mjs'
 import { Chip } from './chip.mjs'
 import { Head, PINS } from './head.mjs'
+import { openWorld } from './world.mjs'
 
 const [image, module, seed = '1', report] = process.argv.slice(2)
 // Time passes in pieces, ns; never faster than on the wall.
 const PIECE_NS = 1e6
 
 const chip = new Chip(image)
-const head = new Head(chip, module, { seed: Number(seed) })
+const head = new Head(chip, openWorld(module), { seed: Number(seed) })
 const check = new Check(chip, head)
 const began = process.hrtime.bigint()
 let litNs = 0
@@ -34,6 +35,8 @@ const end = () => {
 }
 process.stdin.on('data', bytes => chip.take(bytes))
 process.stdin.on('end', end)
+// nobody reads any more
+process.stdout.on('error', end)
 process.on('SIGTERM', end)
 
 const pass = () => {

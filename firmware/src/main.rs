@@ -119,11 +119,25 @@ async fn main(_spawner: Spawner) {
     speak(usb::Driver::new(p.USB, Irqs), identity.serial(), RefCell::new(speaker)).await;
 }
 
+/// What USB keeps.
+struct Memory {
+    serial: [u8; 16],
+    descriptor: [u8; 256],
+    bos: [u8; 256],
+    control: [u8; 64],
+    state: State<'static>,
+}
+
 /// Speaks with hosts over USB, for ever.
 async fn speak(driver: usb::Driver<'static, USB>, serial: [u8; 16], speaking: Speaking) {
-    static MEMORY: StaticCell<([u8; 16], [u8; 256], [u8; 256], [u8; 64], State<'static>)> = StaticCell::new();
-    let (serial, descriptor, bos, control, state) =
-        MEMORY.init((serial, [0; 256], [0; 256], [0; 64], State::new()));
+    static MEMORY: StaticCell<Memory> = StaticCell::new();
+    let Memory { serial, descriptor, bos, control, state } = MEMORY.init(Memory {
+        serial,
+        descriptor: [0; 256],
+        bos: [0; 256],
+        control: [0; 64],
+        state: State::new(),
+    });
     // of pid.codes, for programs that are not sold
     let mut config = Config::new(0x1209, 0x0001);
     config.manufacturer = Some("Tracelight");
@@ -182,7 +196,7 @@ async fn say(sender: &mut Sender<'static, usb::Driver<'static, USB>>, speaking: 
             }
         }
         // whoever reads waits for a short one
-        if length > 0 && length % PACKET == 0 && sender.write_packet(&[]).await.is_err() {
+        if length > 0 && length.is_multiple_of(PACKET) && sender.write_packet(&[]).await.is_err() {
             return;
         }
     }

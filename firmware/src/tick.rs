@@ -160,5 +160,5 @@ fn SWI_IRQ_0() {
         watchdog.feed(HUNG);
     }
     heartbeat.toggle();
-    lamp.set_level((ticker.machine().tick_number() / LAMP_TICKS % 2 == 0).into());
+    lamp.set_level((ticker.machine().tick_number() / LAMP_TICKS).is_multiple_of(2).into());
 }

@@ -35,9 +35,11 @@ const DOUBLE: Board = Board {
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["firmware"] => firmware(&PICO_2),
-        ["firmware", "--double"] => firmware(&DOUBLE),
-        _ => Err("usage: cargo xtask firmware [--double]".to_owned()),
+        ["firmware"] => firmware(&PICO_2, false),
+        ["firmware", "--double"] => firmware(&DOUBLE, false),
+        ["firmware", "--build-core"] => firmware(&PICO_2, true),
+        ["firmware", "--double", "--build-core"] => firmware(&DOUBLE, true),
+        _ => Err("usage: cargo xtask firmware [--double] [--build-core]".to_owned()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -49,10 +51,10 @@ fn main() -> ExitCode {
 }
 
 /// Builds it, and writes `out/firmware/tracelight-NAME.uf2` and `.bin`.
-fn firmware(board: &Board) -> Result<(), String> {
+fn firmware(board: &Board, builds_core: bool) -> Result<(), String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let target = root.join("target/firmware");
-    build(board, &root.join("firmware"), &target)?;
+    build(board, builds_core, &root.join("firmware"), &target)?;
     let built = target.join(board.target).join("release/tracelight-firmware");
     let file = std::fs::read(&built).map_err(|e| format!("{}: {e}", built.display()))?;
     let elf = elf::read(&file).map_err(|e| format!("{}: {e}", built.display()))?;
@@ -101,8 +103,9 @@ fn computes_in_double(name: &str) -> bool {
         || name.starts_with("__") && name.ends_with("df3") && !name.contains("aeabi")
 }
 
-/// Has cargo build it, so that where the sources lie is not in the file.
-fn build(board: &Board, firmware: &Path, target: &Path) -> Result<(), String> {
+/// Has cargo build it, so that where the sources lie is not in the file. A compiler without the board's target builds its library too, and links with LLVM's
+/// linker: that of Debian, with `RUSTC_BOOTSTRAP=1`.
+fn build(board: &Board, builds_core: bool, firmware: &Path, target: &Path) -> Result<(), String> {
     let home = |variable: &str, folder: &str| {
         let home = std::env::var_os("HOME").map(|home| PathBuf::from(home).join(folder));
         std::env::var_os(variable).map(PathBuf::from).or(home)
@@ -113,15 +116,21 @@ fn build(board: &Board, firmware: &Path, target: &Path) -> Result<(), String> {
         (home("CARGO_HOME", ".cargo"), "/cargo"),
         (home("RUSTUP_HOME", ".rustup"), "/rustup"),
     ];
-    let flags: Vec<String> = places
+    let core: (&[&str], &[&str]) = if builds_core {
+        (&["-Zbuild-std=core", "--ignore-rust-version"], &["-Clinker=ld.lld-19", "-Clinker-flavor=ld.lld"])
+    } else {
+        (&[], &[])
+    };
+    let remapped = places
         .into_iter()
-        .filter_map(|(place, name)| Some(format!("--remap-path-prefix={}={name}", place?.display())))
-        .collect();
+        .filter_map(|(place, name)| Some(format!("--remap-path-prefix={}={name}", place?.display())));
+    let flags: Vec<String> = core.1.iter().map(|&flag| flag.to_owned()).chain(remapped).collect();
     let status = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(firmware)
         .args(["build", "--release", "--locked", "--target", board.target, "--target-dir"])
         .arg(target)
         .args(board.flags)
+        .args(core.0)
         .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"))
         .status()
         .map_err(|e| format!("cargo: {e}"))?;

@@ -19,6 +19,7 @@ mod observed;
 mod open_loop;
 mod paces;
 mod recovery;
+mod scenarios;
 mod segments;
 mod session;
 mod shapes;

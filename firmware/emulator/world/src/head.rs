@@ -1,13 +1,12 @@
-//! The simulated head behind the pins of an emulated board: volts and switches in, edges of encoders out.
-//!
-//! A module for Node: numbers go in and out of functions, edges lie in memory from [`edges`] on.
+//! The simulated head: volts and switches in, edges of encoders out.
 
 use std::cell::RefCell;
 
 use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_plant::Plant;
 use tracelight_rig::{Actuation, Joint, PanTilt, Sensed};
-use tracelight_sim::RigConfig;
+
+use crate::rig;
 
 /// From head to wall, m: three feet.
 const DISTANCE_M: f64 = 0.9144;
@@ -40,7 +39,7 @@ const fn joint(number: u32) -> Joint {
 // SAFETY: nothing else of the module has that name, here and below
 #[unsafe(no_mangle)]
 pub extern "C" fn begin(seed: u32, has_gyroscope: u32) {
-    let mut config = RigConfig::preset("bridge").expect("there is such a preset");
+    let mut config = rig();
     config.truth.gyroscope.fitted = has_gyroscope != 0;
     let truth = config.plant_config();
     HEAD.set(Some(Head {
