@@ -1,6 +1,6 @@
 //! Every key of a rig file: its place, unit, bounds, meaning, and the field it sets.
 
-use tracelight_sim::{LawName, Model, ObserverName, RigConfig};
+use tracelight_sim::{Day, LawName, Model, ObserverName, RigConfig};
 use tracelight_units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_JERKS, ANGULAR_SPEEDS, LENGTHS, TIMES, Unit};
 
 /// The field a key sets.
@@ -10,6 +10,8 @@ pub(crate) enum Slot<T> {
     Real(fn(&mut T) -> &mut f64),
     /// The same, which a rig need not have.
     Maybe(fn(&mut T) -> &mut Option<f64>),
+    /// A day, which nobody need know.
+    Day(fn(&mut T) -> &mut Option<Day>),
     /// A whole number.
     Count(fn(&mut T) -> &mut u32),
     /// Yes or no.

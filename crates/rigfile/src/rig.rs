@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use toml_edit::{Document, Item, TableLike, Value};
-use tracelight_sim::{DriveKind, Identified, LightSettings, Model, RigConfig};
+use tracelight_sim::{Day, DriveKind, Identified, LightSettings, Model, RigConfig};
 use tracelight_task::Failure;
 use tracelight_units as units;
 
@@ -233,6 +233,12 @@ fn set<T>(key: &Key<T>, target: &mut T, entry: &Entry<'_>, place: &Mark<'_>) -> 
         set(target, name);
         return Ok(());
     }
+    if let Slot::Day(field) = key.slot {
+        let day = entry.value.as_str().and_then(Day::read);
+        *field(target) =
+            Some(day.ok_or_else(|| complain("must be a day as a text, such as \"2026-11-30\"".into()))?);
+        return Ok(());
+    }
     let value = number(key, entry.value).map_err(&complain)?;
     let (low, high) = key.bounds;
     if !(low <= value && value <= high) {
@@ -245,7 +251,7 @@ fn set<T>(key: &Key<T>, target: &mut T, entry: &Entry<'_>, place: &Mark<'_>) -> 
         Slot::Maybe(field) => *field(target) = Some(value),
         Slot::Count(field) if value.fract() == 0.0 => *field(target) = value as u32,
         Slot::Count(_) => return Err(complain("must be a whole number".into())),
-        Slot::Flag(_) | Slot::Choice(_) => {}
+        Slot::Flag(_) | Slot::Choice(_) | Slot::Day(_) => {}
     }
     Ok(())
 }
@@ -331,7 +337,11 @@ fn section<T>(text: &mut String, prefix: &str, keys: &[Key<T>], from: &mut T) {
 
 /// Whether a rig does not have what the key sets.
 fn is_absent<T>(key: &Key<T>, from: &mut T) -> bool {
-    matches!(key.slot, Slot::Maybe(field) if field(from).is_none())
+    match key.slot {
+        Slot::Maybe(field) => field(from).is_none(),
+        Slot::Day(field) => field(from).is_none(),
+        _ => false,
+    }
 }
 
 /// A value as it stands in a file: shortest digits that read back to the same bits; 0 of what the rig does not have.
@@ -343,6 +353,7 @@ pub(crate) fn shown<T>(key: &Key<T>, from: &mut T) -> String {
     match key.slot {
         Slot::Real(field) => quantity(*field(from)),
         Slot::Maybe(field) => quantity(field(from).unwrap_or_default()),
+        Slot::Day(field) => quoted(&field(from).map_or_else(|| "2026-11-30".into(), |day| day.to_string())),
         Slot::Count(field) => field(from).to_string(),
         Slot::Flag(field) => field(from).to_string(),
         Slot::Choice(Choice { get, .. }) => quoted(get(from)),
@@ -440,6 +451,9 @@ mod tests {
         assert!(slow.contains("[safety] standing: light may stand for 0.02 s"), "{slow}");
         assert!(error("[safety]\nstanding = \"20s\"\n").contains("must be from 0.02s to 10s"));
         assert!(error("[laser]\nclass = 2\n").contains("must be one of 1, 1M, 2"));
+        let said = based("[laser]\nwavelength = \"650nm\"\nmeasured_on = \"2026-11-30\"\n").unwrap();
+        assert_eq!((said.light.unfit(), parsed("", &write(&said)).unwrap().rig.light), (None, said.light));
+        assert!(error("[laser]\nmeasured_on = \"yesterday\"\n").contains("must be a day"));
         // a file that is written goes on following
         let text = write(&RigConfig::report());
         let weaker =

@@ -3,8 +3,9 @@
 use tracelight_sim::{LaserClass, LightSettings, RigConfig};
 use tracelight_units::{ANGLES, ANGULAR_SPEEDS, TIMES, Unit};
 
-use crate::keys::{Choice, Key, Slot, choice, real};
+use crate::keys::{Choice, Key, PURE, Slot, choice, real};
 
+const WAVELENGTHS: &[Unit] = &[("nm", 1.0), ("um", 1e3)];
 const POWER: &[Unit] = &[("W", 1.0), ("mW", 1e-3)];
 /// The key that follows from `laser.power` where a file does not have it.
 pub(crate) const STANDING: &str = "safety.standing";
@@ -14,7 +15,7 @@ const TILT: &str = "safety.park_tilt";
 const MOST_RAD: f64 = 3.2;
 
 /// Keys of `[laser]` and `[safety]`; of the last two both, or none, are in a file.
-pub(crate) const SAFETY_KEYS: [Key<RigConfig>; 7] = [
+pub(crate) const SAFETY_KEYS: [Key<RigConfig>; 10] = [
     choice(
         "laser.class",
         "what its label says",
@@ -25,6 +26,29 @@ pub(crate) const SAFETY_KEYS: [Key<RigConfig>; 7] = [
         },
     ),
     real("laser.power", POWER, LightSettings::POWER_W, "power of its light", |r| &mut r.light.power_w),
+    Key {
+        path: "laser.wavelength",
+        units: WAVELENGTHS,
+        bounds: (200.0, 2000.0),
+        meaning: "its wavelength; a real head is not lit without",
+        slot: Slot::Maybe(|r| &mut r.light.wavelength_nm),
+    },
+    Key {
+        path: "laser.measured_on",
+        units: PURE,
+        bounds: (0.0, 0.0),
+        meaning: "day on which its power was measured at the aperture; a real head is not lit without",
+        slot: Slot::Day(|r| &mut r.light.measured_on),
+    },
+    choice(
+        "laser.operated_class",
+        "highest class that whoever operates it answers for; nothing above it is lit with a real head",
+        Choice {
+            names: || LaserClass::ALL.map(LaserClass::name).to_vec(),
+            get: |r| r.light.operated.name(),
+            set: |r, name| r.light.operated = LaserClass::named(name).unwrap_or(r.light.operated),
+        },
+    ),
     real(
         STANDING,
         TIMES,

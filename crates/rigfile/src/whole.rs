@@ -12,7 +12,7 @@ pub(crate) const BASE: &str = "base";
 
 /// Keys, or beginnings of keys, that came when rig files without them were about already. A file that has none of a row is older
 /// than the row, not cut off: what is written today ends with keys that are older than all of them.
-const CAME_LATER: [&str; 12] = [
+const CAME_LATER: [&str; 13] = [
     "model.pan.motor.back_emf",
     "model.pan.motor.dead_band",
     "model.tilt.motor.back_emf",
@@ -23,6 +23,7 @@ const CAME_LATER: [&str; 12] = [
     "control.scale_tolerance",
     "control.host_lost",
     "laser.",
+    "laser.operated_class",
     "safety.jolt",
     "safety.turned",
 ];
@@ -88,7 +89,7 @@ fn needed(kind: DriveKind) -> Vec<String> {
 }
 
 fn is_needed(key: &Key<RigConfig>) -> bool {
-    key.path != STANDING && !matches!(key.slot, Slot::Maybe(_))
+    key.path != STANDING && !matches!(key.slot, Slot::Maybe(_) | Slot::Day(_))
 }
 
 #[cfg(test)]
@@ -207,7 +208,7 @@ mod tests {
         assert_eq!(file.rig, RigConfig::report());
         let remark = file.remark.unwrap();
         assert!(
-            remark.contains("older than 18 of today's keys (model.enable.on to safety.turned)"),
+            remark.contains("older than 19 of today's keys (model.enable.on to safety.turned)"),
             "{remark}"
         );
         assert_eq!(read("new.toml", whole.clone().into_bytes()).unwrap().remark, None);

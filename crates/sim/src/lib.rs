@@ -50,7 +50,7 @@ pub use control_settings::ControlSettings;
 pub use diagram::{Diagram, ScopeTick};
 pub use drive::{DriveKind, DriveSettings};
 pub use laws::{Compensator, HandTuned, LawName, ObserverName, StepReference};
-pub use light_settings::{LaserClass, LightSettings};
+pub use light_settings::{Day, LaserClass, LightSettings};
 pub use link::{Emulation, LinkSettings};
 pub use observed::{ByEncoders, LightFrom, Observed, Origin, observed_tick};
 pub use pid_law::PidLaw;

@@ -15,7 +15,7 @@ use tracelight_pipeline::told_places;
 use tracelight_port::{At, Device, head};
 use tracelight_report::{Film, LogMeta, Summary, film};
 use tracelight_results::{self as results, Asked, Before, Records, Told, write};
-use tracelight_sim::ByEncoders;
+use tracelight_sim::{ByEncoders, Observed as _};
 use tracelight_stroke::Vec2;
 use tracelight_task::{Failure, Task};
 
@@ -145,6 +145,9 @@ fn connected(
     let is_there = seat.is_some() || std::io::stdin().is_terminal();
     if device.rig().wants_a_person() && !args.dry_run && !is_there {
         return Err(nobody_arms("start it in one, or with --dry-run"));
+    }
+    if !device.origin().simulated && !args.dry_run {
+        named::fit(&prepared.driving.rig)?;
     }
     if !args.dry_run {
         device.rig_mut().wait_for_light(task)?;

@@ -109,6 +109,15 @@ pub(crate) fn rig_or_port(name: &str) -> Result<(RigConfig, Option<At>), Failure
     }
 }
 
+/// Whether a real head may be lit with the laser that its rig file tells of.
+///
+/// # Errors
+/// `rig-file`: it does not say enough of the laser, or nobody answers for its class.
+pub(crate) fn fit(rig: &RigConfig) -> Result<(), Failure> {
+    let because = |why| Failure::usage("rig-file", format!("{}: this head is not lit: {why}", rig.name));
+    rig.light.unfit().map_or(Ok(()), |why| Err(because(why)))
+}
+
 /// A name of a head as it is everywhere: files from the root.
 pub(crate) fn from_root(name: &str) -> String {
     let whole = |file: &str| {

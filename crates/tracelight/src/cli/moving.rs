@@ -170,8 +170,9 @@ pub(crate) fn park(args: &ParkArgs, stop: &Stop) -> Result<Answer, Failure> {
 
 pub(crate) fn jog(args: &JogArgs, stop: &Stop) -> Result<Answer, Failure> {
     let to = args.to.map(|Offset(x, y)| Jog::To(Point::new(x.0, y.0)));
-    args.head.moved(stop, |mover, (arms, task)| {
+    args.head.moved(stop, |mover, (arms, may_light, task)| {
         if args.dot.is_some() {
+            may_light?;
             mover.check_dot()?;
         }
         let place = match to.or(args.by) {
@@ -195,7 +196,7 @@ impl HeadArgs {
     fn moved(
         &self,
         stop: &Stop,
-        what: impl FnOnce(&mut Mover<'_>, (bool, Task<'_>)) -> Result<Moved, Failure>,
+        what: impl FnOnce(&mut Mover<'_>, (bool, Result<(), Failure>, Task<'_>)) -> Result<Moved, Failure>,
     ) -> Result<Answer, Failure> {
         let bar = Bar::new(self.voice.quiet);
         let task = Task { progress: &bar, stop };
@@ -203,8 +204,9 @@ impl HeadArgs {
         let _kept = stop.keep();
         let mut device = head(&at, &driving.rig, driving.pose, stop)?;
         let (origin, arms) = (device.origin(), device.rig().wants_a_person());
-        let moved =
-            Mover::new(&mut device, &driving, task).and_then(|mut mover| what(&mut mover, (arms, task)));
+        let may_light = if origin.simulated { Ok(()) } else { named::fit(&driving.rig) };
+        let moved = Mover::new(&mut device, &driving, task)
+            .and_then(|mut mover| what(&mut mover, (arms, may_light, task)));
         // it knows why it is gone
         let moved = moved.map_err(|why| device.rig().failure().unwrap_or(why))?;
         let Moved { place, dot_s, stops_rad } = &moved;

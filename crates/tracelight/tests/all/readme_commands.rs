@@ -14,13 +14,15 @@ use crate::house_rules::sources;
 use crate::support::{folder, root};
 
 /// Lines that cannot run here, exactly as they stand, and why.
-const NOT_RUN: [(&str, &str); 25] = [
+const NOT_RUN: [(&str, &str); 27] = [
     ("tracelight studio", "opens a browser"),
     ("tracelight studio --lan", "opens a browser"),
     ("tracelight studio --rig /dev/ttyACM0:my-head.toml", "a real board"),
     ("tracelight studio examples/sign.svg --folder out/studio --no-open", "waits for Ctrl-C"),
     ("tracelight home --by-stops --rig /dev/ttyACM0:my-head.toml", "a real board"),
     ("cargo test --workspace", "it runs this test"),
+    ("rustup target add thumbv8m.main-none-eabihf", "another compiler"),
+    ("cargo xtask firmware", "cargo"),
     ("cargo run --release -p tracelight-job --example picture_to_figures", "cargo"),
     ("tracelight doctor", "looks at the cameras that are plugged in"),
     ("tracelight doctor --camera /dev/video2 --camera-size 640x480", "a real camera"),

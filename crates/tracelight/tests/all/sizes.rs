@@ -45,6 +45,26 @@ fn no_crate_is_too_large() {
     assert!(complaints(&sizes).is_empty(), "{:#?}", complaints(&sizes));
 }
 
+/// Most lines of the firmware that are neither comments nor empty: pins, and nothing that could be tried without them.
+const MOST_LINES_OF_GLUE: usize = 500;
+
+/// Lines of code.
+fn code(text: &str) -> usize {
+    text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//")).count()
+}
+
+#[test]
+fn the_firmware_is_glue() {
+    let files = sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../firmware/src"));
+    let lines: usize = files.iter().map(|file| code(&fs::read_to_string(file).unwrap())).sum();
+    assert!(lines > 100, "{files:?}");
+    assert!(
+        lines <= MOST_LINES_OF_GLUE,
+        "{lines} lines of code: what knows no pin belongs into crates/board"
+    );
+    assert_eq!(code("//! a\n\nfn b() {\n    // c\n}\n"), 2);
+}
+
 #[test]
 fn what_is_too_large_is_told() {
     let crates = |program: usize, largest: usize| {

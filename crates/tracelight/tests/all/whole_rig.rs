@@ -67,7 +67,7 @@ fn a_rig_file_older_than_the_lasers_keys_is_read_with_a_note() {
     let old = format!("{before}[safety]{after}");
     let (code, said) = planned(&dir, "old.toml", &old, &[]);
     assert_eq!(code, Some(0), "{said}");
-    assert!(said.contains("note: ") && said.contains("(laser.class to laser.power)"), "{said}");
+    assert!(said.contains("note: ") && said.contains("(laser.class to laser.operated_class)"), "{said}");
     assert_eq!(planned(&dir, "old.toml", &old, &["--quiet"]), (Some(0), String::new()));
     assert_eq!(shown(dir.join("old.toml").to_str().unwrap()), report);
 }
