@@ -7,8 +7,8 @@ import { computeInFloat, runPioByTheClock, startWithoutBootRom, waitForTheHostsB
 
 // The chip's clock, ns a cycle: what its peripherals run by.
 const CYCLE_NS = 8
-// Its processor is a smaller one than that of an RP2350: run so much faster, a tick takes about as long as there. That proves nothing about time.
-const PROCESSOR_NS = CYCLE_NS / 6
+// Its processor is a smaller one than that of an RP2350: run so much faster, a tick takes about as long as on an emulated one (70 µs). That proves nothing about time.
+const PROCESSOR_NS = CYCLE_NS / 4
 // Instructions are run for so long between two looks at the clock, ns.
 const LOOK_NS = 100
 // Time until PIO has told an edge, ns.
