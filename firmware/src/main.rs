@@ -18,7 +18,7 @@ use embassy_rp::pio::{Pio, PioBatch};
 use embassy_rp::pwm::{self, Pwm};
 use embassy_rp::spi::{self, Spi};
 use embassy_rp::watchdog::{ResetReason, Watchdog};
-use embassy_rp::{Peri, bind_interrupts, pio, usb};
+use embassy_rp::{Peri, bind_interrupts, pac, pio, usb};
 use embassy_time::{Duration, Ticker as Every};
 use embassy_usb::class::cdc_acm::{CdcAcmClass, Sender, State};
 use embassy_usb::{Builder, Config};
@@ -46,13 +46,26 @@ bind_interrupts!(struct Irqs {
     USBCTRL_IRQ => usb::InterruptHandler<USB>;
 });
 
-/// Nothing is left to do but to stay dark: the watchdog starts it anew.
-#[panic_handler]
-fn panic(_: &PanicInfo<'_>) -> ! {
+/// Lines of the laser: its enable and its gate.
+const LIGHT: u32 = 1 << 13 | 1 << 14;
+
+/// Nothing is left to do but to go dark: the heartbeat stops, and the watchdog starts it anew.
+fn dark() -> ! {
     cortex_m::interrupt::disable();
+    pac::SIO.gpio_out(0).value_clr().write_value(LIGHT);
     loop {
         core::hint::spin_loop();
     }
+}
+
+#[panic_handler]
+fn panic(_: &PanicInfo<'_>) -> ! {
+    dark()
+}
+
+#[cortex_m_rt::exception]
+unsafe fn HardFault(_: &cortex_m_rt::ExceptionFrame) -> ! {
+    dark()
 }
 
 #[embassy_executor::main(executor = "embassy_rp::executor::Executor", entry = "cortex_m_rt::entry")]
@@ -221,7 +234,7 @@ fn why_reset(watchdog: &Watchdog) -> Reset {
     }
     #[cfg(feature = "pico-2")]
     {
-        let why = embassy_rp::pac::POWMAN.chip_reset().read();
+        let why = pac::POWMAN.chip_reset().read();
         match () {
             () if why.had_bor() => Reset::BrownOut,
             () if why.had_por() => Reset::PowerUp,

@@ -110,20 +110,11 @@ pub fn start(looking: Looking, mut ticking: Ticking, begin_encoders: impl FnOnce
     });
 }
 
-#[cfg(feature = "pico-2")]
-#[embassy_rp::interrupt]
-fn PWM_IRQ_WRAP_0() {
-    look();
-}
-
-#[cfg(feature = "double")]
-#[embassy_rp::interrupt]
-fn PWM_IRQ_WRAP() {
-    look();
-}
-
 /// Looks at the switches, and has every fourth look begin a tick.
-fn look() {
+// SAFETY: nothing else has the name of that interrupt
+#[cfg_attr(feature = "pico-2", unsafe(export_name = "PWM_IRQ_WRAP_0"))]
+#[cfg_attr(feature = "double", unsafe(export_name = "PWM_IRQ_WRAP"))]
+extern "C" fn look() {
     pac::PWM.intr().write(|w| w.set_ch7(true));
     // SAFETY: this interrupt's own
     let Some(looking) = (unsafe { &mut *LOOKING.0.get() }) else { return };
