@@ -118,11 +118,10 @@ async fn main(_spawner: Spawner) {
     let light = sees_light.then(|| Input::new(p.PIN_19, Pull::None));
     let head =
         Head { encoders, light, gate, enable, amplifiers, _bridges: bridges, bus, gyroscope, converter };
-    let last_us = now_us();
     let stops = [stop, lid, key, pan_fault, tilt_fault];
-    let looking = Looking { stops, switches: Switches::default(), looks: 0, last_us };
+    let looking = Looking { stops, switches: Switches::default(), looks: 0, due_us: 0 };
     let inputs = identity.capabilities.inputs;
-    let ticking = Ticking { ticker, head, inputs, heartbeat, lamp, watchdog, last_us };
+    let ticking = Ticking { ticker, head, inputs, heartbeat, lamp, watchdog, last_us: now_us() };
     tick::start(looking, ticking, || {
         let mut batch = PioBatch::new();
         batch.set_enable(&mut sm0, true);

@@ -26,6 +26,9 @@ use crate::head::Head;
 /// Looks a tick, and their rate.
 const LOOKS: u32 = 4;
 const LOOK_HZ: u32 = 4_000;
+const LOOK_US: u32 = 1_000_000 / LOOK_HZ;
+/// By so much the clock that counts µs may be behind that of the looks.
+const EARLY_US: u32 = 2;
 /// Their slice; its pins are none of its.
 const SLICE: usize = 7;
 /// The chip starts anew if nobody feeds it for so long.
@@ -40,8 +43,8 @@ pub struct Looking {
     pub switches: Switches,
     /// Looks since the beginning.
     pub looks: u32,
-    /// When the last one was, µs.
-    pub last_us: u32,
+    /// When the last one was due, µs.
+    pub due_us: u32,
 }
 
 /// What a tick needs.
@@ -107,6 +110,10 @@ pub fn start(looking: Looking, mut ticking: Ticking, begin_encoders: impl FnOnce
     cortex_m::interrupt::free(|_| {
         begin_encoders();
         slice.csr().write(|w| w.set_en(true));
+        // SAFETY: the interrupt is masked here
+        if let Some(looking) = unsafe { &mut *LOOKING.0.get() } {
+            looking.due_us = now_us();
+        }
     });
 }
 
@@ -119,12 +126,11 @@ extern "C" fn look() {
     // SAFETY: this interrupt's own
     let Some(looking) = (unsafe { &mut *LOOKING.0.get() }) else { return };
     let now_us = now_us();
-    // one that was held up for long missed some, which are looks too
-    let passed_us = now_us.wrapping_sub(looking.last_us);
+    // looks are late, never early; one that was held up until after the next counts for both
+    let passed = (now_us.wrapping_sub(looking.due_us) + EARLY_US) / LOOK_US;
     let before = looking.looks;
-    let passed = (passed_us + 1_000_000 / LOOK_HZ / 2) / (1_000_000 / LOOK_HZ);
-    looking.looks = before.wrapping_add(passed.max(1));
-    looking.last_us = now_us;
+    looking.looks = before.wrapping_add(passed);
+    looking.due_us = looking.due_us.wrapping_add(passed * LOOK_US);
     let open = (0..).zip(&looking.stops).fold(0, |open, (bit, line)| open | u8::from(line.is_high()) << bit);
     looking.switches.look(open);
     if before / LOOKS != looking.looks / LOOKS {
