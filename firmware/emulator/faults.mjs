@@ -40,10 +40,10 @@ const hold = (is, what) => {
 }
 
 class Bench {
-  constructor(seed) {
+  constructor(seed, gyroscope = false) {
     this.chip = new Chip(image)
     this.world = openWorld(module)
-    this.head = new Head(this.chip, this.world, { seed })
+    this.head = new Head(this.chip, this.world, { seed, gyroscope })
     this.check = new Check(this.chip, this.head)
     this.host = new Host(this.world, seed + 1)
     this.said = Buffer.alloc(0)
@@ -76,7 +76,11 @@ class Bench {
 }
 
 // Does what a scenario says, and undoes it.
-const does = ({ open, silent, hangs, cut, swapped }, { chip, head, host }, joint) => {
+const does = ({ open, silent, hangs, bump_rad: bumpRad, cut, swapped }, { chip, head, host, world }, joint) => {
+  if (bumpRad) {
+    world.bump(bumpRad, 0)
+    return () => {}
+  }
   if (open) {
     const isHighToStop = !open.startsWith('amplifier')
     chip.set(STOPS[open], isHighToStop)
@@ -103,7 +107,7 @@ const does = ({ open, silent, hangs, cut, swapped }, { chip, head, host }, joint
 
 const run = (scenario, seed) => {
   const roll = dice(seed)
-  const bench = new Bench(seed)
+  const bench = new Bench(seed, scenario.gyroscope)
   const { chip, head, host } = bench
   const named = `${scenario.name} (moment ${seed})`
   bench.pass(MOST_BEFORE_MS, () => bench.isLit)
