@@ -75,6 +75,11 @@ impl<const SEGMENTS: usize> State<SEGMENTS> {
         is_still.then(|| PanTilt::from_fn(counts))
     }
 
+    /// Whether so many ticks of a plan are there, or all of it, or as much as there is room for.
+    pub fn has_ahead(&self, ticks: u32) -> bool {
+        self.player.has_ahead(ticks)
+    }
+
     /// What a controller that begins anew with the same head must not forget.
     pub fn carried(&self) -> Carried {
         Carried { heat: self.watch.heat(), shut_ticks: self.budget.shut_ticks() }

@@ -5,12 +5,15 @@
 //! While it is open, others [`watch`] it, and anybody may make it dark ([`darken`]); [`share`] holds a port for several programs, of which one drives at a time.
 //! [`serve`] emulates a board with its head at a pseudo-terminal, by the clock, for whatever program speaks the wire's language.
 
+mod asked;
 #[cfg(unix)]
 mod device;
 #[cfg(unix)]
 mod examine;
 #[cfg(unix)]
 mod found;
+#[cfg(unix)]
+mod grbl;
 mod greeting;
 #[cfg(unix)]
 mod head;
@@ -30,16 +33,21 @@ mod shared;
 mod terminal;
 #[cfg(unix)]
 mod visit;
+#[cfg(unix)]
+mod wire;
 
+pub use asked::{asked_json, asked_text};
 #[cfg(unix)]
 pub use device::Device;
 #[cfg(unix)]
 pub use examine::examine;
 #[cfg(unix)]
 pub use found::{Found, found};
+#[cfg(unix)]
+pub use grbl::{Grbl, ask};
 pub use greeting::{Examined, examined_json, examined_text};
 #[cfg(unix)]
-pub use head::{At, head};
+pub use head::{At, Connected, Speaks, head};
 #[cfg(unix)]
 pub use port::Port;
 #[cfg(unix)]

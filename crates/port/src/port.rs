@@ -9,7 +9,7 @@ use std::time::Duration;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{FlockOperation, Mode, OFlags};
 use rustix::io::Errno;
-use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use rustix::termios::{ControlModes, OptionalActions, tcgetattr, tcsetattr};
 use tracelight_task::Failure;
 
 use crate::shared::{Owner, socket_of};
@@ -73,6 +73,23 @@ impl Port {
         rustix::fs::flock(&file, FlockOperation::NonBlockingLockExclusive).map_err(|e| wrong(e.into()))?;
         raw(&file).map_err(wrong)?;
         Ok(Self { file: file.into(), path: path.to_owned() })
+    }
+
+    /// Sets the speed of a serial line, which stays ready for it when it is closed: boards that start anew when somebody opens their port do so once.
+    ///
+    /// # Errors
+    /// `port`: it has no such speed.
+    pub fn at_speed(self, baud: u32) -> Result<Self, Failure> {
+        let set = || -> io::Result<()> {
+            let mut settings = tcgetattr(&self.file)?;
+            settings.set_speed(baud)?;
+            settings.control_modes.remove(ControlModes::HUPCL | ControlModes::CRTSCTS);
+            settings.control_modes.insert(ControlModes::CLOCAL);
+            Ok(tcsetattr(&self.file, OptionalActions::Now, &settings)?)
+        };
+        let wrong = |e| Failure::usage("port", format!("{}: no {baud} baud: {e}", self.path.display()));
+        set().map_err(wrong)?;
+        Ok(self)
     }
 
     /// Whether it was opened here, and not through another program that shares it.

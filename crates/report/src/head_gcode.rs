@@ -7,6 +7,7 @@
 use std::fmt::Write;
 
 use tracelight_formats::fixed;
+use tracelight_grbl::BoardAxis;
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::Point;
 use tracelight_trajectory::{Plan, PlanPoint};
@@ -19,15 +20,6 @@ const MOST_TICKS: usize = 1000;
 
 /// Decimals of angles in degrees; 0.2 µm of the wall a metre away.
 const DECIMALS: usize = 5;
-
-/// How a joint's motor is called on the board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BoardAxis {
-    /// Letter of the axis, such as `X`.
-    pub letter: char,
-    /// The motor turns the other way.
-    pub reversed: bool,
-}
 
 /// Unit of the board's axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

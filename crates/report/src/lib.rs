@@ -47,7 +47,7 @@ pub use error::EncodeError;
 pub use events::{Event, events};
 pub use film::{Film, film};
 pub use finished::{Finished, Picture, PointFigures, Setting, Target, Timing};
-pub use head_gcode::{AxisUnit, BoardAxis, HeadGcode, HeadProgram, head_gcode};
+pub use head_gcode::{AxisUnit, HeadGcode, HeadProgram, head_gcode};
 pub use log::{LogMeta, LogWriter, Recovered, index, recover};
 pub use page::{html, page};
 pub use painting::paint;

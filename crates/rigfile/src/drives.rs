@@ -1,5 +1,6 @@
 //! Keys of what turns the joints: `drive`, and the table of stepper motors or hobby servos.
 
+use tracelight_grbl::BoardAxis;
 use tracelight_sim::{DriveKind, LawName, ObserverName, RigConfig};
 use tracelight_task::Failure;
 use tracelight_units::{ANGLES, ANGULAR_SPEEDS, TIMES, Unit};
@@ -26,7 +27,7 @@ pub(crate) const fn drive_key() -> Key<RigConfig> {
     )
 }
 
-const STEPPER_KEYS: [Key<RigConfig>; 8] = [
+const STEPPER_KEYS: [Key<RigConfig>; 10] = [
     count(
         "stepper.steps_per_turn",
         (4.0, 1e4),
@@ -69,6 +70,24 @@ const STEPPER_KEYS: [Key<RigConfig>; 8] = [
         (0.0, 0.5),
         "furthest that a microstep lies beside its place, as a share of a full step",
         |r| &mut r.drive.stepper.microstep_error,
+    ),
+    choice(
+        "stepper.pan_axis",
+        "axis of a Grbl board that turns pan; with a minus if the motor turns the other way",
+        Choice {
+            names: || BoardAxis::NAMES.to_vec(),
+            get: |r| r.drive.axes.pan.name(),
+            set: |r, name| r.drive.axes.pan = BoardAxis::read(name).unwrap_or(r.drive.axes.pan),
+        },
+    ),
+    choice(
+        "stepper.tilt_axis",
+        "axis of a Grbl board that turns tilt; with a minus if the motor turns the other way",
+        Choice {
+            names: || BoardAxis::NAMES.to_vec(),
+            get: |r| r.drive.axes.tilt.name(),
+            set: |r, name| r.drive.axes.tilt = BoardAxis::read(name).unwrap_or(r.drive.axes.tilt),
+        },
     ),
 ];
 

@@ -29,7 +29,7 @@ pub use calibration::read as calibrated;
 pub use drives::{measured, set_law};
 pub use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
 pub use homing::homing_section;
-pub use names::{at_port, emulated};
+pub use names::{at_port, emulated, on_grbl};
 pub use pages::PageName;
 pub use rig::{RigFile, parse, read, write};
 pub use save::saved;

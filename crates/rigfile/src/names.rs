@@ -18,6 +18,17 @@ fn is_port(name: &str) -> bool {
         || number.is_some_and(|n| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()))
 }
 
+/// What speaks Grbl, and the rig whose head is there, where one is said: `grbl:PORT`, `grbl:tcp:HOST`, `grbl:tcp:HOST:PORT`, each with `:RIG` behind.
+#[must_use]
+pub fn on_grbl(name: &str) -> Option<(&str, Option<&str>)> {
+    let place = name.strip_prefix("grbl:").filter(|place| !place.is_empty())?;
+    let is_rig = |rig: &str| rig.ends_with(".toml") || RigConfig::preset(rig).is_some();
+    match place.rsplit_once(':') {
+        Some((port, rig)) if is_rig(rig) => Some((port, Some(rig))),
+        _ => Some((place, None)),
+    }
+}
+
 /// The port that a name means, and the rig whose head is there, where one is said: `PORT` or `PORT:RIG`. Whether there is such a port is asked; one of the usual
 /// names may also be missing.
 pub fn at_port(name: &str, is_there: impl Fn(&str) -> bool) -> Option<(&str, Option<&str>)> {
@@ -44,6 +55,20 @@ mod tests {
         assert_eq!(emulated("emulated:my.toml"), Some("my.toml"));
         for none in ["report", "emulate", "emulated:", "emulated:emulated", "emulatedreport"] {
             assert_eq!(emulated(none), None, "{none}");
+        }
+    }
+
+    #[test]
+    fn a_board_that_speaks_grbl_is_named_so() {
+        assert_eq!(on_grbl("grbl:/dev/ttyUSB0"), Some(("/dev/ttyUSB0", None)));
+        assert_eq!(on_grbl("grbl:/dev/ttyUSB0:my.toml"), Some(("/dev/ttyUSB0", Some("my.toml"))));
+        assert_eq!(on_grbl("grbl:tcp:192.168.1.9"), Some(("tcp:192.168.1.9", None)));
+        assert_eq!(
+            on_grbl("grbl:tcp:fluidnc.local:23:stepper"),
+            Some(("tcp:fluidnc.local:23", Some("stepper")))
+        );
+        for none in ["grbl:", "grbl", "/dev/ttyUSB0", "stepper"] {
+            assert_eq!(on_grbl(none), None, "{none}");
         }
     }
 

@@ -12,7 +12,7 @@ pub(crate) const BASE: &str = "base";
 
 /// Keys, or beginnings of keys, that came when rig files without them were about already. A file that has none of a row is older
 /// than the row, not cut off: what is written today ends with keys that are older than all of them.
-const CAME_LATER: [&str; 13] = [
+const CAME_LATER: [&str; 15] = [
     "model.pan.motor.back_emf",
     "model.pan.motor.dead_band",
     "model.tilt.motor.back_emf",
@@ -26,6 +26,8 @@ const CAME_LATER: [&str; 13] = [
     "laser.operated_class",
     "safety.jolt",
     "safety.turned",
+    "stepper.pan_axis",
+    "stepper.tilt_axis",
 ];
 
 /// The preset of a name; what may be given instead, where it is none.

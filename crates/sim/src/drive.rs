@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
+use tracelight_grbl::BoardAxis;
 use tracelight_plant::{ServoDrive, StepperDrive};
+use tracelight_rig::PanTilt;
 
 /// The kind of drive of both joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +24,8 @@ pub struct DriveSettings {
     pub kind: DriveKind,
     /// Stepper motors, driver and gear.
     pub stepper: StepperDrive,
+    /// Axes of a Grbl board on which stepper motors hang.
+    pub axes: PanTilt<BoardAxis>,
     /// Hobby servos and the board that sends their pulses.
     pub servo: ServoDrive,
 }
@@ -52,7 +56,15 @@ impl DriveKind {
 
 impl DriveSettings {
     /// Motors with encoders; the other tables hold common parts.
-    pub const MOTOR: Self = Self { kind: DriveKind::Motor, stepper: NEMA_17, servo: MG996R };
+    pub const MOTOR: Self = Self {
+        kind: DriveKind::Motor,
+        stepper: NEMA_17,
+        axes: PanTilt::new(
+            BoardAxis { letter: 'X', reversed: false },
+            BoardAxis { letter: 'Y', reversed: false },
+        ),
+        servo: MG996R,
+    };
 
     /// By how much pulses are sent early, s: as long as a servo is behind them on its way at a steady speed, but for its dead band.
     pub(crate) fn lead_s(&self) -> f64 {

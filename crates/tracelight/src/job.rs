@@ -12,7 +12,7 @@ use tracelight_job::{
 };
 use tracelight_operator::{AtWall, Attending, Seat, nobody_arms};
 use tracelight_pipeline::told_places;
-use tracelight_port::{At, Device, head};
+use tracelight_port::{At, Connected, head};
 use tracelight_report::{Film, LogMeta, Summary, film};
 use tracelight_results::{self as results, Asked, Before, Records, Told, write};
 use tracelight_sim::{ByEncoders, Observed as _};
@@ -136,7 +136,7 @@ fn connected(
     at: &At,
     (prepared, seat): (&Prepared, Option<&dyn Seat>),
     task: Task<'_>,
-) -> Result<ByEncoders<Device>, Failure> {
+) -> Result<ByEncoders<Connected>, Failure> {
     let mut device = head(at, &prepared.driving.rig, prepared.driving.pose, task.stop)?;
     // before anything is written of a run that cannot begin
     if !device.rig().is_homed() {
@@ -159,7 +159,7 @@ fn connected(
 fn ran(
     args: &TraceArgs,
     prepared: Prepared,
-    (mut device, seat): (Option<ByEncoders<Device>>, Option<&dyn Seat>),
+    (mut device, seat): (Option<ByEncoders<Connected>>, Option<&dyn Seat>),
     kept: &mut Records<'_>,
     task: Task<'_>,
 ) -> Result<(Prepared, Ran), Failure> {
@@ -210,7 +210,7 @@ fn begun(
 }
 
 fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<(Prepared, Option<At>), Failure> {
-    let (mut driving, at) = args.driving.resolve_head()?;
+    let (mut driving, at) = args.driving.resolve_head(task)?;
     at.iter().try_for_each(|_| args.check_port())?;
     args.law.apply(&mut driving.rig)?;
     emulate(&mut driving.rig, &args.follow.sim_trouble, args.eye.camera.is_some())?;

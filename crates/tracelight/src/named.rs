@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use tracelight_files as files;
 use tracelight_formats::ReadOptions;
 use tracelight_picture::{Pixels, Raster, Source, decode, decode_with};
-use tracelight_port::At;
+use tracelight_port::{At, Speaks};
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_rigfile::head::KnownHead;
@@ -70,7 +70,8 @@ fn rig_of(name: &str, nor: &str) -> Result<RigConfig, Failure> {
     if let Some(base) = rigfile::emulated(name) {
         return Ok(RigConfig { emulated: Some(Emulation::default()), ..rig(base)? });
     }
-    if let Some((port, _)) = rigfile::at_port(name, is_device) {
+    let on_grbl = || rigfile::on_grbl(name).map(|_| (name, None));
+    if let Some((port, _)) = rigfile::at_port(name, is_device).or_else(on_grbl) {
         let message = format!(
             "{name} is a port, and this command drives no head: give a preset that `tracelight rigs` lists, or a rig file; `trace`, `point`, `home`, `jog` and `park` drive \
              the head at a port, and `tracelight doctor --rig {port}` looks at its board"
@@ -91,13 +92,19 @@ fn rig_of(name: &str, nor: &str) -> Result<RigConfig, Failure> {
 
 /// The head that is taken to be at a port of which nobody says what is there.
 const AT_PORT: &str = "report";
+/// Likewise on a Grbl board.
+const ON_GRBL: &str = "stepper";
 
 /// Likewise, or a port with the head that is there: `PORT` or `PORT:RIG`.
 pub(crate) fn rig_or_port(name: &str) -> Result<(RigConfig, Option<At>), Failure> {
+    if let Some((port, head)) = rigfile::on_grbl(name) {
+        let at = At { port: port.to_owned(), speaks: Speaks::Grbl, is_said: head.is_some() };
+        return Ok((rig(head.unwrap_or(ON_GRBL))?, Some(at)));
+    }
     let Some((port, head)) = rigfile::at_port(name, is_device) else {
         return Ok((rig_of(name, ", and there is no such port of a board")?, None));
     };
-    let at = At { port: port.into(), is_said: head.is_some() };
+    let at = At { port: port.to_owned(), speaks: Speaks::Wire, is_said: head.is_some() };
     match rig(head.unwrap_or(AT_PORT))? {
         RigConfig { emulated: Some(_), .. } => {
             let message = format!(
@@ -127,6 +134,11 @@ pub(crate) fn from_root(name: &str) -> String {
     let root = |path: &str| {
         std::path::absolute(path).map_or_else(|_| path.to_owned(), |path| path.to_string_lossy().into_owned())
     };
+    if let Some((port, head)) = rigfile::on_grbl(name) {
+        let port = if is_device(port) { root(port) } else { port.to_owned() };
+        let head = head.map(|head| format!(":{}", whole(head).unwrap_or_else(|| head.to_owned())));
+        return format!("grbl:{port}{}", head.unwrap_or_default());
+    }
     if let Some((port, head)) = rigfile::at_port(name, is_device) {
         // Windows has ports that are no paths
         let port = if is_device(port) { root(port) } else { port.to_owned() };
@@ -142,12 +154,14 @@ pub(crate) fn from_root(name: &str) -> String {
 
 /// The head that is at a port by a name of both; [`AT_PORT`] where it does not say. `None` of a name without a port.
 pub(crate) fn head_at_port(name: &str) -> Option<&str> {
-    rigfile::at_port(name, is_device).map(|(_, head)| head.unwrap_or(AT_PORT))
+    let on_grbl = rigfile::on_grbl(name).map(|(_, head)| head.unwrap_or(ON_GRBL));
+    on_grbl.or_else(|| rigfile::at_port(name, is_device).map(|(_, head)| head.unwrap_or(AT_PORT)))
 }
 
 /// The port that a name means, which may say whose head is there.
 pub(crate) fn port(name: &str) -> PathBuf {
-    rigfile::at_port(name, is_device).map_or(name, |(port, _)| port).into()
+    let port = rigfile::on_grbl(name).or_else(|| rigfile::at_port(name, is_device));
+    port.map_or(name, |(port, _)| port).into()
 }
 
 /// Whether there is a device of that name to talk to, also by a link.

@@ -1,8 +1,10 @@
 //! Boards at pseudo-terminals: looked at, driven, shared and made dark.
 
 #![cfg(unix)]
+#![allow(clippy::disallowed_methods, reason = "tests may ask the C library: they allow for the last digit")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
 
+mod grbl;
 mod served;
 mod shared;
 

@@ -1,7 +1,8 @@
 use clap::Args;
 use serde_json::{Value, json};
 use tracelight_camera::{camera_json, camera_text, look_at_all, no_camera_text};
-use tracelight_port::{Found, examine, examined_json, examined_text, found};
+use tracelight_port::{Found, ask, asked_json, asked_text, examine, examined_json, examined_text, found};
+use tracelight_rigfile::on_grbl;
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Stop};
 
@@ -14,7 +15,8 @@ use crate::named;
 #[command(after_help = "Examples: tracelight doctor\n          \
                   tracelight doctor --camera /dev/video2 --camera-size 640x480\n          \
                   tracelight doctor --camera http://192.168.1.20:8080/video\n          \
-                  tracelight doctor --rig /dev/ttyACM0\n\n\
+                  tracelight doctor --rig /dev/ttyACM0\n          \
+                  tracelight doctor --rig grbl:/dev/ttyUSB0\n\n\
                   A port is opened only if its device says that it is a board of Tracelight's, or if --rig names it. Each camera is used for about three seconds. Its exposure and gain are changed during the test and restored afterwards.")]
 pub(crate) struct DoctorArgs {
     /// Look at this camera only: /dev/video0, or an http:// network camera [default: all connected cameras]
@@ -23,7 +25,7 @@ pub(crate) struct DoctorArgs {
     /// Columns and rows of its images [default: about 1280x720]
     #[arg(long, value_name = "WxH")]
     camera_size: Option<ImageSize>,
-    /// Look at the board at this port only, which is disarmed: what it is, and how good the line is
+    /// Look at the board at this port only, which is disarmed: what it is, and how good the line is; at grbl:PORT how a Grbl board is set
     #[arg(long, value_name = "PORT", conflicts_with = "camera")]
     rig: Option<String>,
     #[command(flatten)]
@@ -31,6 +33,10 @@ pub(crate) struct DoctorArgs {
 }
 
 pub(crate) fn run(args: &DoctorArgs, stop: &Stop) -> Result<Answer, Failure> {
+    if let Some((port, _)) = args.rig.as_deref().and_then(on_grbl) {
+        let board = ask(port, stop)?;
+        return Ok(Answer::new(asked_text(port, &board), asked_json(port, &board).to_string()));
+    }
     if let Some(port) = &args.rig {
         let seen = examine(&named::port(port), stop)?;
         return Ok(Answer::new(examined_text(&seen), examined_json(&seen).to_string()));

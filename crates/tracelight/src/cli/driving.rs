@@ -5,7 +5,7 @@ use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, Distance
 use tracelight_port::At;
 use tracelight_rigfile::head::KnownHead;
 use tracelight_sim::RigConfig;
-use tracelight_task::Failure;
+use tracelight_task::{Failure, Task};
 use tracelight_trajectory::{LitSpeed, PlanRequest};
 use tracelight_units::{AngularAcceleration, Length, Speed};
 
@@ -29,7 +29,8 @@ pub(crate) struct DrivingArgs {
     #[arg(help_heading = "Time and order", long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = rounding)]
     pub(crate) corner: Option<Length>,
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file; emulated or emulated:RIG drives it by a board behind a wire. PORT or PORT:RIG, such as
-    /// /dev/ttyACM0:my-head.toml, is the head at a board's port, for the commands that drive one
+    /// /dev/ttyACM0:my-head.toml, is the head at a board's port, for the commands that drive one; grbl:/dev/ttyUSB0:my-head.toml or grbl:tcp:HOST:my-head.toml one
+    /// on a Grbl board
     #[arg(help_heading = "Rig and law", long, value_name = "RIG.toml|PRESET|PORT", default_value = "report")]
     pub(crate) rig: String,
     /// Shape of the dark moves between strokes
@@ -75,17 +76,28 @@ impl DrivingArgs {
         Ok(self.resolve_on(named::rig(&self.rig)?))
     }
 
-    /// Likewise of a rig that may be at a port, and that.
-    pub(crate) fn resolve_head(&self) -> Result<(Driving, Option<At>), Failure> {
+    /// Likewise of a rig that may be at a port, and that: within what its board allows.
+    pub(crate) fn resolve_head(&self, task: Task<'_>) -> Result<(Driving, Option<At>), Failure> {
         let (rig, at) = named::rig_or_port(&self.rig)?;
-        Ok((self.resolve_on(rig), at))
+        let Some(at) = at else { return Ok((self.resolve_on(rig), None)) };
+        let (rig, notes) = at.fitted(self.limited(rig), task.stop)?;
+        notes.iter().for_each(|note| task.say(&format!("note: {note}")));
+        Ok((self.resolve_limited(rig), Some(at)))
     }
 
     /// Gathers the rest for a rig that was read: a plan is made for its masses.
-    pub(crate) fn resolve_on(&self, mut rig: RigConfig) -> Driving {
+    pub(crate) fn resolve_on(&self, rig: RigConfig) -> Driving {
+        self.resolve_limited(self.limited(rig))
+    }
+
+    fn limited(&self, mut rig: RigConfig) -> RigConfig {
         if let Some(wish) = self.amax {
             rig.motion.acceleration_limit_rad_s2 = rig.motion.acceleration_limit_rad_s2.map(|_| wish.0);
         }
+        rig
+    }
+
+    fn resolve_limited(&self, rig: RigConfig) -> Driving {
         let pose = HeadPose::square_on(self.distance.map_or(DEFAULT_DISTANCE_M, |d| d.0));
         let request = PlanRequest {
             speed_m_s: self.speed.map_or(DEFAULT_SPEED_M_S, |s| s.0),

@@ -25,7 +25,7 @@ use tracelight_flags::positive_length;
 /// The head at a port, and where it stands.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct HeadArgs {
-    /// Port of its board, and its rig: PORT or PORT:RIG, such as /dev/ttyACM0:my-head.toml
+    /// Port of its board, and its rig: PORT or PORT:RIG, such as /dev/ttyACM0:my-head.toml; grbl:PORT or grbl:tcp:HOST of a Grbl board
     #[arg(long, value_name = "PORT")]
     rig: String,
     /// Distance from the head to the target [default: 3ft]
@@ -200,7 +200,7 @@ impl HeadArgs {
     ) -> Result<Answer, Failure> {
         let bar = Bar::new(self.voice.quiet);
         let task = Task { progress: &bar, stop };
-        let (driving, at) = self.driving()?;
+        let (driving, at) = self.driving(task)?;
         let _kept = stop.keep();
         let mut device = head(&at, &driving.rig, driving.pose, stop)?;
         let (origin, arms) = (device.origin(), device.rig().wants_a_person());
@@ -222,7 +222,7 @@ impl HeadArgs {
         Ok(Answer::new(place.words() + &moved.words(), json.to_string()))
     }
 
-    fn driving(&self) -> Result<(Driving, At), Failure> {
+    fn driving(&self, task: Task<'_>) -> Result<(Driving, At), Failure> {
         let (rig, at) = named::rig_or_port(&self.rig)?;
         let Some(at) = at else {
             let message = format!(
@@ -232,6 +232,7 @@ impl HeadArgs {
             );
             return Err(Failure::usage("usage", message));
         };
+        let (rig, _) = at.fitted(rig, task.stop)?;
         let pose = HeadPose::square_on(self.distance.map_or(DEFAULT_DISTANCE_M, |d| d.0));
         let request = request_of(&rig);
         let mut driving = Driving::new(rig, pose, request, Asked::default());

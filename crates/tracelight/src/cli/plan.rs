@@ -2,13 +2,12 @@ use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use tracelight_files as files;
+use tracelight_grbl::BoardAxis;
 use tracelight_job::Prepared;
 use tracelight_pipeline::{
     Driving, OrderBy, OrderRequest, Placed, Schedule, SheetFigures, Sketch, Standing, place, schedule, sketch,
 };
-use tracelight_report::{
-    BoardAxis, ColourBy, HeadGcode, drawing, head_gcode, plan_csv, plan_json, plan_words, preview,
-};
+use tracelight_report::{ColourBy, HeadGcode, drawing, head_gcode, plan_csv, plan_json, plan_words, preview};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::Effort;
 use tracelight_task::{Failure, Task, counted};

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use tracelight_camera::{Source, named_devices, shown};
 use tracelight_files as files;
 use tracelight_operator::{self as operator, Bar};
-use tracelight_port::examine;
+use tracelight_port::{At, Speaks, ask, examine};
 use tracelight_sim::RigConfig;
 use tracelight_studio::{Camera, Head, Invitation, Performed, Program, Seat, open};
 use tracelight_task::{Failure, Progress, Stop, Task};
@@ -168,14 +168,22 @@ fn head(name: &str, bar: &Bar, stop: &Stop) -> Result<Head, Failure> {
     let draws_as = named::from_root(name);
     let (_, at) = named::rig_or_port(&draws_as)?;
     let planned_as = named::head_at_port(&draws_as).unwrap_or(&draws_as).to_owned();
-    let is_real = at.as_ref().is_some_and(|at| match examine(&at.port, stop) {
-        Ok(examined) => examined.board.wants_a_person(),
+    let is_real = at.as_ref().is_some_and(|at| match wants_a_person(at, stop) {
+        Ok(wants) => wants,
         Err(failure) => {
             bar.say(&format!("note: {}; a head that is real is taken to be there", failure.message));
             true
         }
     });
     Ok(Head { draws_as, planned_as, is_at_port: at.is_some(), is_real })
+}
+
+/// Whether a person must arm the head at a port.
+fn wants_a_person(at: &At, stop: &Stop) -> Result<bool, Failure> {
+    match at.speaks {
+        Speaks::Wire => examine(at.port.as_ref(), stop).map(|examined| examined.board.wants_a_person()),
+        Speaks::Grbl => ask(&at.port, stop).map(|board| !board.is_simulated()),
+    }
 }
 
 /// The camera that is named, from the root: it is asked for from other folders.

@@ -14,7 +14,7 @@ use crate::house_rules::sources;
 use crate::support::{folder, root};
 
 /// Lines that cannot run here, exactly as they stand, and why.
-const NOT_RUN: [(&str, &str); 27] = [
+const NOT_RUN: [(&str, &str); 28] = [
     ("tracelight studio", "opens a browser"),
     ("tracelight studio --lan", "opens a browser"),
     ("tracelight studio --rig /dev/ttyACM0:my-head.toml", "a real board"),
@@ -29,6 +29,7 @@ const NOT_RUN: [(&str, &str); 27] = [
     ("tracelight doctor --camera http://192.168.1.20:8080/video", "a camera on the net"),
     ("tracelight trace --camera /dev/video0", "a real camera"),
     ("tracelight doctor --rig /dev/ttyACM0", "a real board"),
+    ("tracelight doctor --rig grbl:/dev/ttyUSB0", "a real board"),
     ("tracelight jog 3deg,0deg --dot 2s --rig /dev/ttyACM0:my-head.toml", "a real board"),
     ("tracelight home --rig /dev/ttyACM0:my-head.toml", "a real board"),
     ("tracelight jog 5deg,0deg --rig /dev/ttyACM0", "a real board"),
