@@ -209,13 +209,10 @@ impl Driver {
 
     /// Has the board remember where the head points.
     fn home(&mut self, counts: PanTilt<i32>) {
-        let (axes, units) = (self.sender.writer.axes, self.sender.writer.units);
-        let steps = PanTilt::from_fn(|j| (axes[j].sign() * f64::from(counts[j])) as i64);
-        self.sender.orders.push_back(self.sender.writer.home(steps, ZERO_NUMBER));
-        self.sender.orders.push_back(ZERO.to_owned());
-        let at = self.teller.raw_steps();
-        self.sender.writer.begins = PanTilt::from_fn(|j| (at[j] - steps[j]) as f64 * units[j]);
-        self.sender.writer.forget();
+        let (axes, at) = (self.sender.writer.axes, self.teller.raw_steps());
+        let zero = PanTilt::from_fn(|j| at[j] - (axes[j].sign() * f64::from(counts[j])) as i64);
+        let order = self.sender.writer.home(zero, ZERO_NUMBER);
+        self.sender.orders.extend([order, ZERO.to_owned()]);
         self.board.is_homed = true;
     }
 

@@ -102,13 +102,16 @@ impl Writer {
         vec![format!("M3S{}", trimmed(self.full_power, 3)), wait, "M4S0".to_owned()]
     }
 
-    /// Says where the head points: the angles, in steps.
-    pub(crate) fn home(&mut self, steps: PanTilt<i64>, number: u8) -> String {
-        let mut line = format!("G10L20P{number}");
+    /// Says where angle zero is, in steps of the machine. (By where it is now, it would be by what the board's parser believes, which need not be what it reports.)
+    pub(crate) fn home(&mut self, zero: PanTilt<i64>, number: u8) -> String {
+        let mut line = format!("G10L2P{number}");
         for joint in Joint::BOTH {
-            let value = trimmed(steps[joint] as f64 * self.units[joint], DECIMALS);
+            let value = trimmed(zero[joint] as f64 * self.units[joint], DECIMALS);
             let _ = write!(line, "{}{value}", self.axes[joint].letter);
+            // as the board has it: with so many decimals
+            self.begins[joint] = value.parse().unwrap_or(0.0);
         }
+        self.place = None;
         line
     }
 
@@ -159,6 +162,7 @@ mod tests {
         assert_eq!(writer.lines(&item((110, -40), (0, 10), false), || 7.25), ["X-0.8F7.25S0"]);
         assert_eq!(writer.lines(&item((110, -40), (0, 0), false), feed), ["G4P0.1"]);
         assert_eq!(writer.lines(&item((110, -40), (0, 0), true), feed), ["M3S1000", "G4P0.1", "M4S0"]);
-        assert_eq!(writer.home(PanTilt::new(0, 50), 6), "G10L20P6Y0X1");
+        assert_eq!(writer.home(PanTilt::new(0, 50), 6), "G10L2P6Y0X1");
+        assert_eq!(writer.lines(&item((110, -40), (1, 0), false), feed), ["X-1.8Y1.1F3000"]);
     }
 }

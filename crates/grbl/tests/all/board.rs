@@ -345,7 +345,7 @@ impl Board {
                 ("X" | "Y", value) => {
                     let axis = usize::from(&line[i..=i] == "Y");
                     if sets_zero {
-                        self.offsets[1][axis] = self.at[axis] - value;
+                        self.offsets[1][axis] = value;
                     } else {
                         (to[axis], moves) = (value + begins[axis], true);
                     }
