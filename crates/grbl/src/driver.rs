@@ -290,6 +290,10 @@ impl Driver {
                 self.let_go(self.bound(now_us));
             }
             Stage::Stopping(since) if now_us > since + MOST_HOLDING_US => self.reset(now_us),
+            Stage::Resetting(since) if now_us > since + MOST_SILENT_US => {
+                self.fail(Trouble::Silent { waited_s: (now_us - since) as f64 * 1e-6 });
+                return;
+            }
             Stage::SettingUp if self.sender.is_quiet() => {
                 let rests = |status: &Status| matches!(status.state, Doing::Idle);
                 if self.status.as_ref().is_some_and(rests) {
@@ -400,6 +404,10 @@ impl Driver {
     fn hear(&mut self, said: Said, now_us: u64) {
         match said {
             Said::Ok => {
+                if self.stage == Stage::SettingUp {
+                    // where work coordinates begin may have changed: only a later report counts
+                    self.status = None;
+                }
                 let ends = self.sender.window.answered().and_then(|line| line.ends);
                 if let Some(ends) = ends {
                     self.sender.follower.taken(ends, now_us);

@@ -50,6 +50,13 @@ pub(crate) struct Board {
     pub(crate) acceleration: f64,
     pub(crate) junction: f64,
     pub(crate) laser_mode: u8,
+    /// Reports tell places of the workpiece, as with $10=0.
+    pub(crate) reports_work: bool,
+    /// What it says when it starts, and of itself: other firmware says something else.
+    pub(crate) welcome: &'static str,
+    pub(crate) options: &'static str,
+    /// Characters that its memory holds.
+    pub(crate) holds: usize,
     coming: VecDeque<u8>,
     memory: VecDeque<u8>,
     line: String,
@@ -88,6 +95,10 @@ impl Board {
             acceleration: 8000.0,
             junction: 0.01,
             laser_mode: 1,
+            reports_work: false,
+            welcome: "Grbl 1.1h ['$' for help]",
+            options: "[OPT:V,15,128]",
+            holds: MEMORY,
             coming: VecDeque::new(),
             memory: VecDeque::new(),
             line: String::new(),
@@ -152,7 +163,8 @@ impl Board {
         self.line.clear();
     }
 
-    fn begins(&self) -> [f64; 2] {
+    /// Where the work coordinates begin that are in use.
+    pub(crate) fn begins(&self) -> [f64; 2] {
         self.offsets[usize::from(self.uses_zero)]
     }
 
@@ -167,7 +179,7 @@ impl Board {
                 self.most = self.most.max(self.memory.len());
             }
         }
-        assert!(self.memory.len() <= MEMORY, "characters are lost: {} are in memory", self.memory.len());
+        assert!(self.memory.len() <= self.holds, "characters are lost: {} are in memory", self.memory.len());
         (0..STEPS_A_MS).for_each(|_| self.move_on());
         self.read();
         let share = |block: &Block| if self.constant { 1.0 } else { self.speed / block.nominal };
@@ -191,8 +203,10 @@ impl Board {
                     Mode::Alarm => "Alarm",
                 };
                 let [x, y] = self.at.map(|at| (at * self.steps).round() / self.steps);
+                let begins = if self.reports_work { self.begins() } else { [0.0; 2] };
+                let (x, y, kind) = (x - begins[0], y - begins[1], if self.reports_work { 'W' } else { 'M' });
                 let free = MOVES - self.blocks.len();
-                self.tell(&format!("<{state}|MPos:{x:.3},{y:.3},0.000|Bf:{free},100|FS:0,0>"));
+                self.tell(&format!("<{state}|{kind}Pos:{x:.3},{y:.3},0.000|Bf:{free},100|FS:0,0>"));
             }
             b'!' if self.mode != Mode::Alarm => self.mode = Mode::Hold,
             0x18 => {
@@ -200,7 +214,7 @@ impl Board {
                 self.stop(if loses || self.mode == Mode::Alarm { Mode::Alarm } else { Mode::Idle });
                 (self.uses_zero, self.in_inverse_time) = (false, false);
                 self.tell("");
-                self.tell("Grbl 1.1h ['$' for help]");
+                self.tell(self.welcome);
                 if loses {
                     self.tell("ALARM:3");
                 }
@@ -288,7 +302,7 @@ impl Board {
         match line {
             "$I" => {
                 self.tell("[VER:1.1h.20190830:]");
-                self.tell("[OPT:V,15,128]");
+                self.tell(self.options);
             }
             "$$" => {
                 let Self { steps, rate, acceleration, junction, laser_mode, .. } = *self;

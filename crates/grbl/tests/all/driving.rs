@@ -89,10 +89,14 @@ fn connected(mut board: Board, config: &RigConfig) -> Result<Bench, Trouble> {
 
 /// A session with a head that was told that it points straight ahead.
 fn homed(config: &RigConfig) -> Session<Bench> {
-    let board = Board::new(steps_a_degree(config));
+    homed_at(Board::new(steps_a_degree(config)), config, PanTilt::default())
+}
+
+/// Likewise, that it points somewhere else.
+fn homed_at(board: Board, config: &RigConfig, counts: PanTilt<i32>) -> Session<Bench> {
     let mut session = Session::new(connected(board, config).unwrap());
     until(&mut session, State::Unhomed, 10);
-    session.request(Request::Home(PanTilt::default())).unwrap();
+    session.request(Request::Home(counts)).unwrap();
     until(&mut session, State::Ready, 10);
     session
 }
@@ -157,7 +161,10 @@ fn lights(seen: &[Seen]) -> Vec<[f64; 2]> {
 /// What was lit is what the plan has lit, within so many steps.
 fn assert_drawn(session: &Session<Bench>, plan: &Plan, config: &RigConfig) {
     let wanted = lit(plan, config.drive.stepper.microstep_rad());
-    let drawn = lights(&session.rig().board.seen);
+    let board = &session.rig().board;
+    let begins = board.begins().map(|begins| begins * board.steps);
+    let drawn: Vec<[f64; 2]> =
+        lights(&board.seen).into_iter().map(|[x, y]| [x - begins[0], y - begins[1]]).collect();
     let (off, missing) = (furthest(&drawn, &wanted), furthest(&wanted, &drawn));
     println!("light off by {off:.2} steps, missing by {missing:.2}");
     assert!(off < 1.6 && missing < 1.6, "off {off} missing {missing}");
@@ -207,6 +214,34 @@ fn a_pause_is_dark_soon_and_what_was_not_done_is_drawn_after_it() {
         let dark = session.rig().board.seen[asked..].iter().rposition(|seen| seen.light > 0.0).unwrap_or(0);
         assert!(when == When::AfterStroke || dark < 60, "dark after {dark} ms");
         ticks(&mut session, 500);
+        session.request(Request::Resume).unwrap();
+        until(&mut session, State::Done, 20_000);
+        assert_drawn(&session, &plan, &config);
+    }
+}
+
+#[test]
+fn other_boards_and_other_zeros_are_drawn_on_as_well() {
+    let config = config();
+    let plan = plan(&config);
+    let other = |reports_work, welcome, options, holds| {
+        let mut board = Board::new(steps_a_degree(&config));
+        (board.reports_work, board.welcome, board.options) = (reports_work, welcome, options);
+        board.holds = holds;
+        board
+    };
+    for board in [
+        other(true, "Grbl 1.1h ['$' for help]", "[OPT:V,15,128]", 127),
+        other(false, "GrblHAL 1.1f ['$' or '$HELP' for help]", "[OPT:VNM,35,1024,3,0]", 1023),
+        other(true, "Grbl 3.7 [FluidNC v3.7.0 (wifi) '$' for help]", "[OPT:MPHS]", 127),
+    ] {
+        let mut session = homed_at(board, &config, PanTilt::new(77, -40));
+        session.request(Request::Park).unwrap();
+        until(&mut session, State::Ready, 5000);
+        begin(&mut session, &plan);
+        ticks(&mut session, 900);
+        session.request(Request::Pause(When::AtOnce)).unwrap();
+        until(&mut session, State::Paused, 4000);
         session.request(Request::Resume).unwrap();
         until(&mut session, State::Done, 20_000);
         assert_drawn(&session, &plan, &config);
